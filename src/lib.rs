@@ -1,0 +1,36 @@
+//! Exact hidden-line drawings of 3D models and surfaces, for print and pen plotters.
+//!
+//! ```text
+//!  read ──► mesh ──► scene ──────► view ─► classify ──► engines ──► visibility
+//!  files    polygons topology,     camera  faces, edges  which parts  spans of qi
+//!                    triangles                           are hidden       │
+//!                                                                         ▼
+//!        bytes ◄── writers ◄── plot ◄── page ◄─────────────────────── strokes
+//!                              mm, pens  placement                    polylines
+//! ```
+//!
+//! # What is exact
+//!
+//! Vertices as read (`f64`) *are* the scene. Every decision — which side, in front or not, front
+//! or back, the order of two cuts — is the sign of a polynomial in those numbers and is decided
+//! exactly by [`predicates`]; nothing is compared against a tolerance. Only end points of visible
+//! pieces and image coordinates are rounded, each once.
+//!
+//! # Units and frames
+//!
+//! World: model units, right-handed, z up. Image: see [`view`]. Page: millimetres, see [`plot`].
+//! Angles are in radians unless a name ends in `_deg`.
+
+pub mod mesh;
+
+pub mod topology;
+
+pub mod scene;
+
+pub mod view;
+
+pub mod visibility;
+
+pub mod strokes;
+
+pub mod plot;

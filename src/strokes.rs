@@ -1,0 +1,121 @@
+//! Strokes: what the pen draws, as polylines in image coordinates.
+
+use glam::DVec2;
+
+/// Why a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum StrokeKind {
+    /// Between a front face and one that is not.
+    Silhouette,
+    /// Between two faces that meet at more than the crease angle.
+    Crease,
+    /// On one face only.
+    Boundary,
+    /// On three faces or more.
+    Nonmanifold,
+    /// Where two faces pierce each other.
+    Intersection,
+    /// Between two materials or groups.
+    Material,
+    /// Any other edge of a mesh.
+    Mesh,
+    /// A grid line of a function surface.
+    Grid,
+    /// A level curve of a function surface.
+    Level,
+    /// An axis, its ticks, or the base box.
+    Axis,
+    /// Lettering.
+    Text,
+    /// Shading.
+    Hatch,
+}
+
+impl StrokeKind {
+    /// The name used on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Silhouette => "silhouette",
+            Self::Crease => "crease",
+            Self::Boundary => "boundary",
+            Self::Nonmanifold => "nonmanifold",
+            Self::Intersection => "intersection",
+            Self::Material => "material",
+            Self::Mesh => "mesh",
+            Self::Grid => "grid",
+            Self::Level => "level",
+            Self::Axis => "axis",
+            Self::Text => "text",
+            Self::Hatch => "hatch",
+        }
+    }
+}
+
+/// One polyline of a [`Drawing`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke<'a> {
+    /// Why it is drawn.
+    pub kind: StrokeKind,
+    /// Quantitative invisibility: how many triangles hide it; 0 is visible.
+    pub qi: u32,
+    /// Two points or more in image coordinates; a closed stroke ends at its first point.
+    pub points: &'a [DVec2],
+}
+
+/// Strokes in image coordinates (see [`crate::view`]), in a fixed order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Drawing {
+    points: Vec<DVec2>,
+    heads: Vec<Head>,
+}
+
+/// A stroke's attributes and the end of its run in the points; it begins where the last one ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Head {
+    kind: StrokeKind,
+    qi: u32,
+    end: u32,
+}
+
+impl Drawing {
+    /// Appends a stroke. Fewer than two points are no stroke and are left out.
+    pub fn push(&mut self, kind: StrokeKind, qi: u32, points: impl IntoIterator<Item = DVec2>) {
+        let start = self.points.len();
+        self.points.extend(points);
+        if self.points.len() < start + 2 {
+            self.points.truncate(start);
+        } else {
+            self.heads.push(Head { kind, qi, end: self.points.len() as u32 });
+        }
+    }
+
+    /// Number of strokes.
+    pub fn len(&self) -> usize {
+        self.heads.len()
+    }
+
+    /// Whether there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.heads.is_empty()
+    }
+
+    /// Number of points of all strokes.
+    pub fn n_points(&self) -> usize {
+        self.points.len()
+    }
+
+    /// The strokes in order.
+    pub fn iter(&self) -> impl Iterator<Item = Stroke<'_>> {
+        self.heads.iter().scan(0, |start, head| {
+            let points = &self.points[*start..head.end as usize];
+            *start = head.end as usize;
+            Some(Stroke { kind: head.kind, qi: head.qi, points })
+        })
+    }
+
+    /// Smallest box around all points as (lowest, highest) corner; `None` without strokes.
+    pub fn bounds(&self) -> Option<(DVec2, DVec2)> {
+        let (first, rest) = self.points.split_first()?;
+        Some(rest.iter().fold((*first, *first), |(low, high), &p| (low.min(p), high.max(p))))
+    }
+}

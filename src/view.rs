@@ -1,0 +1,170 @@
+//! The camera: which way the scene is looked at, and the map from world to image.
+//!
+//! ```text
+//!            upward (image y)                 world: right-handed, z up
+//!              ▲                              forward = target − eye
+//!              │   ╱ forward                  right   = forward × up
+//!              │  ╱                           upward  = right × forward
+//!              │ ╱
+//!         eye  ●──────► right (image x)       image: x to the right, y upwards
+//! ```
+//!
+//! With `d = P − eye` and the three directions normalised as `r`, `u`, `f`, the image of `P` is
+//! `((d·r)/(d·f), (d·u)/(d·f))` in perspective and `(d·r, d·u)` in orthographic projection. The
+//! image is for drawing only: what hides what is decided on the points of the scene.
+
+use glam::{DVec2, DVec3};
+use thiserror::Error;
+
+/// How rays of sight run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// All through the eye.
+    Perspective {
+        /// Vertical angle that the page shows, in degrees; it has no part in what hides what.
+        fov_deg: f64,
+        /// A point is kept when `(P − eye)·forward ≥ near · forward·forward`.
+        near: f64,
+    },
+    /// All parallel to `forward`; there is no near plane.
+    Orthographic,
+}
+
+/// The near plane's place, as a part of the way from eye to target, unless set otherwise.
+pub const DEFAULT_NEAR: f64 = 1e-6;
+
+/// The vertical field of view, in degrees, unless set otherwise.
+pub const DEFAULT_FOV_DEG: f64 = 30.0;
+
+/// A point of view: finite, with `up` not parallel to the direction of view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    eye: DVec3,
+    target: DVec3,
+    up: DVec3,
+    projection: Projection,
+}
+
+/// Why numbers make no camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum CameraError {
+    /// A number is infinite or not a number.
+    #[error("the camera's numbers must be finite")]
+    NotFinite,
+    /// Eye and target coincide.
+    #[error("eye and target are the same point; move one of them")]
+    NoDirection,
+    /// `up` has no part across the direction of view.
+    #[error("up is parallel to the direction of view; give another --up")]
+    UpParallel,
+    /// The field of view is not between 0 and 180 degrees.
+    #[error("the field of view must be above 0 and below 180 degrees")]
+    FieldOfView,
+    /// The near plane is not in front of the eye.
+    #[error("near must be above 0")]
+    Near,
+}
+
+impl Camera {
+    /// A camera at `eye` looking at `target`.
+    ///
+    /// # Errors
+    /// See [`CameraError`].
+    pub fn new(
+        eye: DVec3,
+        target: DVec3,
+        up: DVec3,
+        projection: Projection,
+    ) -> Result<Self, CameraError> {
+        let camera = Self { eye, target, up, projection };
+        let forward = camera.forward();
+        if !(eye.is_finite() && target.is_finite() && up.is_finite() && forward.is_finite()) {
+            return Err(CameraError::NotFinite);
+        }
+        if forward == DVec3::ZERO {
+            return Err(CameraError::NoDirection);
+        }
+        if let Projection::Perspective { fov_deg, near } = projection {
+            if !(fov_deg > 0.0 && fov_deg < 180.0) {
+                return Err(CameraError::FieldOfView);
+            }
+            if !(near > 0.0 && near.is_finite()) {
+                return Err(CameraError::Near);
+            }
+        }
+        let frame = camera.frame();
+        if !(frame.right.is_finite() && frame.upward.is_finite())
+            || frame.right == DVec3::ZERO
+            || frame.upward == DVec3::ZERO
+        {
+            return Err(CameraError::UpParallel);
+        }
+        Ok(camera)
+    }
+
+    /// Where the observer stands.
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// The point looked at.
+    pub fn target(&self) -> DVec3 {
+        self.target
+    }
+
+    /// The direction that is up on the page.
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
+    /// Perspective or orthographic.
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// `target − eye`, subtracted once per component; decisions take it as exact.
+    pub fn forward(&self) -> DVec3 {
+        self.target - self.eye
+    }
+
+    /// The three image directions, normalised.
+    pub fn frame(&self) -> Frame {
+        // Lengths are scaled to about one first, so that no product over- or underflows.
+        let forward = scaled_to_one(self.forward());
+        let up = scaled_to_one(self.up);
+        let right = scaled_to_one(forward.cross(up));
+        let upward = scaled_to_one(right.cross(forward));
+        Frame {
+            right: right.normalize_or_zero(),
+            upward: upward.normalize_or_zero(),
+            forward: forward.normalize_or_zero(),
+        }
+    }
+
+    /// Image coordinates of a world point, y upwards. Behind the eye they mean nothing.
+    pub fn image(&self, point: DVec3) -> DVec2 {
+        let frame = self.frame();
+        let d = point - self.eye;
+        let image = DVec2::new(d.dot(frame.right), d.dot(frame.upward));
+        match self.projection {
+            Projection::Perspective { .. } => image / d.dot(frame.forward),
+            Projection::Orthographic => image,
+        }
+    }
+}
+
+/// The camera's directions, normalised and at right angles to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// To the right on the page.
+    pub right: DVec3,
+    /// Upwards on the page.
+    pub upward: DVec3,
+    /// Away from the observer.
+    pub forward: DVec3,
+}
+
+fn scaled_to_one(v: DVec3) -> DVec3 {
+    let size = v.abs().max_element();
+    if size > 0.0 { v / size } else { DVec3::ZERO }
+}
