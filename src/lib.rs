@@ -25,7 +25,11 @@ pub mod mesh;
 
 pub mod topology;
 
+pub mod triangulate;
+
 pub mod scene;
+
+pub mod predicates;
 
 pub mod view;
 
