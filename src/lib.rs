@@ -33,7 +33,11 @@ pub mod predicates;
 
 pub mod view;
 
+pub mod classify;
+
 pub mod visibility;
+
+pub mod engines;
 
 pub mod strokes;
 

@@ -71,7 +71,9 @@ impl Topology {
         for part in &parts {
             let before = topology.uses.len() as u32;
             topology.edges.extend_from_slice(&part.edges);
-            topology.use_starts.extend(part.use_ends.iter().map(|end| before + end));
+            topology
+                .use_starts
+                .extend(part.use_ends.iter().map(|end| before + end));
             topology.uses.extend_from_slice(&part.uses);
         }
         for edge in 0..topology.edges.len() {
@@ -94,6 +96,14 @@ impl Topology {
     /// The vertices of one edge, the lower one first. Panics when there is no such edge.
     pub fn edge(&self, edge: u32) -> [u32; 2] {
         self.edges[edge as usize]
+    }
+
+    /// The edge between two vertices, if there is one. O(log edges).
+    pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
+        self.edges
+            .binary_search(&[a.min(b), a.max(b)])
+            .ok()
+            .map(|edge| edge as u32)
     }
 
     /// The uses of one edge, each named by its corner. Panics when there is no such edge.

@@ -38,9 +38,17 @@ const PARAMETER_ERROR: f64 = 1.0 / (1u64 << 42) as f64;
 
 impl Cut {
     /// The segment's first point.
-    pub const START: Self = Self { t: 0.0, error: 0.0, plane: CutPlane::End };
+    pub const START: Self = Self {
+        t: 0.0,
+        error: 0.0,
+        plane: CutPlane::End,
+    };
     /// The segment's last point.
-    pub const END: Self = Self { t: 1.0, error: 0.0, plane: CutPlane::End };
+    pub const END: Self = Self {
+        t: 1.0,
+        error: 0.0,
+        plane: CutPlane::End,
+    };
 }
 
 impl Sight<'_> {
@@ -51,17 +59,24 @@ impl Sight<'_> {
         let [a, b] = at;
         let difference = a.value - b.value;
         // d(a / (a − b)) ≤ (|b| da + |a| db) / (a − b)²; three roundings come on top.
-        let error = (b.value.abs() * a.error + a.value.abs() * b.error)
-            / (difference * difference)
+        let error = (b.value.abs() * a.error + a.value.abs() * b.error) / (difference * difference)
             * 2.0
             + 4.0 * f64::EPSILON;
         let certain = difference.abs() > 2.0 * (a.error + b.error);
         if certain && error <= PARAMETER_ERROR {
-            return Cut { t: (a.value / difference).clamp(0.0, 1.0), error, plane };
+            return Cut {
+                t: (a.value / difference).clamp(0.0, 1.0),
+                error,
+                plane,
+            };
         }
         let [a, b] = self.exact_values(ends, plane);
         let t = exact::ratio(&a, &(&a - b)).clamp(0.0, 1.0);
-        Cut { t, error: 8.0 * f64::EPSILON, plane }
+        Cut {
+            t,
+            error: 8.0 * f64::EPSILON,
+            plane,
+        }
     }
 
     /// The order of two cuts along the segment, exactly. Two planes may cut at one point.
@@ -76,8 +91,20 @@ impl Sight<'_> {
         }
         match (a.plane, b.plane) {
             // A plane cuts strictly between the ends: at an end there is no change of sign.
-            (CutPlane::End, _) => return if a.t < 0.5 { Ordering::Less } else { Ordering::Greater },
-            (_, CutPlane::End) => return if b.t < 0.5 { Ordering::Greater } else { Ordering::Less },
+            (CutPlane::End, _) => {
+                return if a.t < 0.5 {
+                    Ordering::Less
+                } else {
+                    Ordering::Greater
+                };
+            }
+            (_, CutPlane::End) => {
+                return if b.t < 0.5 {
+                    Ordering::Greater
+                } else {
+                    Ordering::Less
+                };
+            }
             _ => {}
         }
         // t = f0 / (f0 − f1), so t_a < t_b ⇔ a0 (b0 − b1) < b0 (a0 − a1) ⇔ b0 a1 < a0 b1, up to

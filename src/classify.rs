@@ -1,0 +1,325 @@
+//! One view of a scene: which faces face the eye, and which edges are drawn, and why.
+//!
+//! Faces are *front*, *back* or *edge-on* by the exact sign of their Newell normal against the
+//! direction to the eye. Edges take the first kind that applies:
+//!
+//! | kind | uses | condition |
+//! |---|---|---|
+//! | boundary | 1 | |
+//! | nonmanifold | 3 or more | |
+//! | silhouette | 2 | one face front, the other not |
+//! | crease | 2 | angle between the normals above a threshold |
+//! | mesh | any | |
+//!
+//! Two uses that run the same way mean that the faces are wound against each other; the second
+//! face is then turned over for the comparison, so kinds do not depend on the winding.
+
+use crate::predicates::{Sight, Sign};
+use crate::scene::Scene;
+use crate::strokes::StrokeKind;
+use crate::triangulate::newell_normal;
+use crate::view::{Camera, Frame, Projection};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+/// Faces that meet at more than this angle, in degrees, make a crease unless set otherwise.
+pub const DEFAULT_CREASE_DEG: f64 = 30.0;
+
+/// Which kinds of line are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LineSelection {
+    kinds: u32,
+}
+
+impl LineSelection {
+    /// No line.
+    pub const NONE: Self = Self { kinds: 0 };
+
+    /// Adds a kind.
+    #[must_use]
+    pub const fn with(self, kind: StrokeKind) -> Self {
+        Self {
+            kinds: self.kinds | 1 << kind as u32,
+        }
+    }
+
+    /// Every edge of the mesh, but no line that is not one of its edges.
+    pub const fn all_edges() -> Self {
+        Self::NONE
+            .with(StrokeKind::Silhouette)
+            .with(StrokeKind::Crease)
+            .with(StrokeKind::Boundary)
+            .with(StrokeKind::Nonmanifold)
+            .with(StrokeKind::Mesh)
+    }
+
+    /// The kinds of both.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self {
+            kinds: self.kinds | other.kinds,
+        }
+    }
+
+    /// Whether a kind is drawn.
+    pub const fn contains(self, kind: StrokeKind) -> bool {
+        self.kinds & 1 << kind as u32 != 0
+    }
+}
+
+impl Default for LineSelection {
+    /// Silhouette, crease, boundary, non-manifold and intersection lines.
+    fn default() -> Self {
+        Self::NONE
+            .with(StrokeKind::Silhouette)
+            .with(StrokeKind::Crease)
+            .with(StrokeKind::Boundary)
+            .with(StrokeKind::Nonmanifold)
+            .with(StrokeKind::Intersection)
+    }
+}
+
+/// An edge that is to be drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DrawnEdge {
+    /// Its number in the topology.
+    pub edge: u32,
+    /// Why it is drawn.
+    pub kind: StrokeKind,
+}
+
+/// A vertex in homogeneous image coordinates: the image is `(x / w, y / w)`.
+///
+/// `w` is the distance along the direction of view in perspective and 1 in orthographic
+/// projection; `depth` is that distance in both. Rounded: for drawing and for the spatial index.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImagePoint {
+    /// To the right, times `w`.
+    pub x: f64,
+    /// Upwards, times `w`.
+    pub y: f64,
+    /// The divisor.
+    pub w: f64,
+    /// Distance from the eye (or its plane) along the direction of view, in model units.
+    pub depth: f64,
+}
+
+impl ImagePoint {
+    fn new(point: DVec3, camera: &Camera, frame: &Frame) -> Self {
+        let d = point - camera.eye();
+        let depth = d.dot(frame.forward);
+        let w = match camera.projection() {
+            Projection::Perspective { .. } => depth,
+            Projection::Orthographic => 1.0,
+        };
+        Self {
+            x: d.dot(frame.right),
+            y: d.dot(frame.upward),
+            w,
+            depth,
+        }
+    }
+
+    /// The image coordinates.
+    pub fn image(self) -> DVec2 {
+        DVec2::new(self.x / self.w, self.y / self.w)
+    }
+
+    /// The point a part `t` of the way, in space, to `other`.
+    #[must_use]
+    pub fn towards(self, other: Self, t: f64) -> Self {
+        let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
+        Self {
+            x: mix(self.x, other.x),
+            y: mix(self.y, other.y),
+            w: mix(self.w, other.w),
+            depth: mix(self.depth, other.depth),
+        }
+    }
+}
+
+/// A scene as one camera sees it, with the edges that are to be drawn.
+#[derive(Debug)]
+pub struct ViewedScene<'a> {
+    scene: &'a Scene,
+    camera: Camera,
+    sight: Sight<'a>,
+    image: Vec<ImagePoint>,
+    triangle_turns: Vec<Sign>,
+    /// Empty when every face is a triangle, since the turns then say it all.
+    facings: Vec<Sign>,
+    drawn: Vec<DrawnEdge>,
+    near_plane_cuts: bool,
+}
+
+impl<'a> ViewedScene<'a> {
+    /// Classifies faces and edges; edges of the kinds in `lines` are drawn, in the order of the
+    /// topology.
+    ///
+    /// An edge is selected by any kind that applies to it, and bears the first. Edges whose image
+    /// is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
+    pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
+        let positions = scene.mesh().positions();
+        let sight = Sight::new(positions, camera);
+        let frame = camera.frame();
+        let image = positions
+            .par_iter()
+            .map(|&p| ImagePoint::new(p, camera, &frame))
+            .collect();
+        let triangle_turns = scene
+            .triangles()
+            .par_iter()
+            .map(|&[p, q, r]| sight.turn(p, q, r))
+            .collect();
+        let n_faces = scene.mesh().n_faces() as u32;
+        let facings = if scene.triangles().len() == n_faces as usize {
+            Vec::new()
+        } else {
+            let facing = |face| sight.facing(scene.mesh().face(face));
+            (0..n_faces).into_par_iter().map(facing).collect()
+        };
+        let near_plane_cuts = (0..positions.len() as u32)
+            .into_par_iter()
+            .any(|vertex| sight.near_distance(vertex).1 != Sign::Positive);
+        let mut view = Self {
+            scene,
+            camera: *camera,
+            sight,
+            image,
+            triangle_turns,
+            facings,
+            drawn: Vec::new(),
+            near_plane_cuts,
+        };
+        view.drawn = view.select(lines, crease_deg);
+        view
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The exact predicates for this view.
+    pub fn sight(&self) -> &Sight<'a> {
+        &self.sight
+    }
+
+    /// The image of every vertex.
+    pub fn image(&self) -> &[ImagePoint] {
+        &self.image
+    }
+
+    /// The turn of every triangle's image, positive when counter-clockwise.
+    pub fn triangle_turns(&self) -> &[Sign] {
+        &self.triangle_turns
+    }
+
+    /// Which way a face faces: positive front, negative back, zero edge-on.
+    pub fn facing(&self, face: u32) -> Sign {
+        let facings = if self.facings.is_empty() {
+            &self.triangle_turns
+        } else {
+            &self.facings
+        };
+        facings[face as usize]
+    }
+
+    /// The edges to draw, in the order of the topology.
+    pub fn drawn(&self) -> &[DrawnEdge] {
+        &self.drawn
+    }
+
+    /// Whether an edge is among the drawn ones. O(log drawn).
+    pub fn is_drawn(&self, edge: u32) -> bool {
+        self.drawn
+            .binary_search_by_key(&edge, |drawn| drawn.edge)
+            .is_ok()
+    }
+
+    /// Whether any vertex is not strictly beyond the near plane.
+    pub fn near_plane_cuts(&self) -> bool {
+        self.near_plane_cuts
+    }
+
+    fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<DrawnEdge> {
+        let n_edges = self.scene.topology().edges().len() as u32;
+        let creases = Creases::new(crease_deg);
+        (0..n_edges)
+            .into_par_iter()
+            .with_min_len(4096)
+            .filter_map(|edge| {
+                let kind = self.kind(edge, lines, &creases)?;
+                let [a, b] = self.scene.topology().edge(edge);
+                (!self.sight.same_image(a, b)).then_some(DrawnEdge { edge, kind })
+            })
+            .collect()
+    }
+
+    /// The first kind that applies to an edge, when any that applies is among `lines`.
+    fn kind(&self, edge: u32, lines: LineSelection, creases: &Creases) -> Option<StrokeKind> {
+        let topology = self.scene.topology();
+        let every = lines.contains(StrokeKind::Mesh);
+        let chosen = |kind| (every || lines.contains(kind)).then_some(kind);
+        let &[first, second] = topology.uses(edge) else {
+            let is_boundary = topology.uses(edge).len() == 1;
+            let kind = if is_boundary {
+                StrokeKind::Boundary
+            } else {
+                StrokeKind::Nonmanifold
+            };
+            return chosen(kind);
+        };
+        let faces = [first, second].map(|corner| topology.corner_face(corner));
+        let mesh = self.scene.mesh();
+        let against = topology.runs_upwards(mesh, first) == topology.runs_upwards(mesh, second);
+        let facing = self.facing(faces[0]);
+        let other = self.facing(faces[1]);
+        let other = if against { other.flipped() } else { other };
+        let is_crease = || creases.holds(faces.map(|face| self.normal(face)), against);
+        if (facing == Sign::Positive) != (other == Sign::Positive) {
+            let by_crease = || lines.contains(StrokeKind::Crease) && is_crease();
+            let selected = every || lines.contains(StrokeKind::Silhouette) || by_crease();
+            return selected.then_some(StrokeKind::Silhouette);
+        }
+        if !every && !lines.contains(StrokeKind::Crease) {
+            return None;
+        }
+        if is_crease() {
+            chosen(StrokeKind::Crease)
+        } else {
+            chosen(StrokeKind::Mesh)
+        }
+    }
+
+    fn normal(&self, face: u32) -> DVec3 {
+        newell_normal(self.scene.mesh().positions(), self.scene.mesh().face(face))
+    }
+}
+
+/// The crease angle as its cosine.
+struct Creases {
+    cosine: f64,
+}
+
+impl Creases {
+    fn new(crease_deg: f64) -> Self {
+        Self {
+            cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()),
+        }
+    }
+
+    /// Whether faces with these normals meet at more than the crease angle.
+    ///
+    /// Rounded, since the angle is a setting. A face without area has no normal and no crease.
+    fn holds(&self, [a, b]: [DVec3; 2], against: bool) -> bool {
+        let dot = if against { -a.dot(b) } else { a.dot(b) };
+        let sizes = a.length() * b.length();
+        sizes > 0.0 && dot < self.cosine * sizes
+    }
+}

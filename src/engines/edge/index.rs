@@ -1,0 +1,701 @@
+//! A pyramid of grids over the image that offers the triangles near a segment.
+//!
+//! Each triangle lies in the finest level whose cells are at least as large as its image's box, so
+//! in four cells at most, whatever its size. A segment visits the cells along its image on every
+//! level that holds anything:
+//!
+//! ```text
+//!   level 2   ┌───────────────┐   large triangles
+//!   level 1   ├───────┬───────┤
+//!   level 0   ├───┬───┼───┬───┤   small triangles; 2^k × 2^k of these make a cell of level k
+//! ```
+//!
+//! A cell that a single triangle covers wholly knows a depth behind which everything is hidden
+//! there (W. R. Franklin, SIGGRAPH 1980). Triangles and segments behind it are dropped, so that
+//! cost does not grow with the number of layers.
+//!
+//! Nothing here decides visibility: boxes and depths are rounded outwards, so that at worst a
+//! triangle is offered in vain.
+
+use super::Settings;
+use super::segment::Segment;
+use crate::classify::{ImagePoint, ViewedScene};
+use crate::predicates::Sign;
+use glam::{DVec2, dvec2};
+use rayon::prelude::*;
+
+/// Image coordinates are within this, times the square of their distance from the center plus one,
+/// of the truth: they take about a dozen roundings of numbers that large.
+const IMAGE_ERROR: f64 = 32.0 * f64::EPSILON;
+
+/// Depths are within this part of the largest number that goes into them.
+const DEPTH_ERROR: f64 = 32.0 * f64::EPSILON;
+
+/// Images further out than this, as the tangent of the angle off the axis, share the border cells.
+const WIDEST_TANGENT: f64 = 8.0;
+
+/// Bounds of the number of cells of the finest level.
+const FINEST_CELLS: (f64, f64) = (16.0, (1 << 21) as f64);
+
+/// Triangles seen at a flatter angle than this sine are not used as covers of cells: the contact
+/// tolerance, divided by it, becomes a distance along the sight line.
+const MIN_COVER_SINE: f64 = 0.05;
+
+/// A box in the image and the range of depths in it, rounded outwards.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    low: DVec2,
+    high: DVec2,
+    nearest: f64,
+    farthest: f64,
+}
+
+/// Everything about the view that rounding outwards needs.
+#[derive(Debug, Clone, Copy)]
+struct Rounding {
+    /// In orthographic projection the error does not depend on the place.
+    flat_error: Option<f64>,
+    depth_error: f64,
+}
+
+impl Rounding {
+    fn new(view: &ViewedScene) -> Self {
+        let eye = view.camera().eye();
+        let largest = view
+            .sight()
+            .positions()
+            .par_iter()
+            .map(|&p| (p - eye).abs().element_sum() + p.abs().element_sum())
+            .reduce(|| 0.0, f64::max);
+        let flat_error = (!view.sight().has_near_plane()).then_some(IMAGE_ERROR * largest);
+        Self {
+            flat_error,
+            depth_error: DEPTH_ERROR * largest,
+        }
+    }
+
+    /// How far an image coordinate up to `size` in absolute value may be off.
+    fn image_error(&self, size: f64) -> f64 {
+        self.flat_error
+            .unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
+    }
+
+    fn bounds<const N: usize>(&self, points: [DVec2; N], depths: [f64; N]) -> Bounds {
+        let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let error = self.image_error(low.abs().max(high.abs()).element_sum());
+        Bounds {
+            low: low - error,
+            high: high + error,
+            nearest: depths.iter().copied().fold(f64::INFINITY, f64::min) - self.depth_error,
+            farthest: depths.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth_error,
+        }
+    }
+}
+
+/// One grid: `columns × rows` cells from the index's origin.
+#[derive(Debug, Clone, Copy)]
+struct Level {
+    cell: f64,
+    columns: u32,
+    rows: u32,
+    /// Number of the first cell among those of all levels.
+    first: u32,
+    /// Whether any triangle lies in this level.
+    used: bool,
+}
+
+/// The pyramid; see the module's page.
+#[derive(Debug)]
+pub(super) struct ImageIndex {
+    rounding: Rounding,
+    origin: DVec2,
+    levels: Vec<Level>,
+    /// Where the triangles of each cell begin in `entries`.
+    starts: Vec<u32>,
+    entries: Vec<u32>,
+    /// Depth behind which all is hidden, for each cell of all levels; empty when layers count.
+    covered_from: Vec<f64>,
+    /// Triangles that the near plane cuts: they are offered to every segment.
+    everywhere: Vec<u32>,
+    n_triangles: usize,
+}
+
+impl ImageIndex {
+    /// An index of the triangles that may cover some of `segments`.
+    pub(super) fn new<'s>(
+        view: &ViewedScene,
+        segments: impl Iterator<Item = &'s Segment> + Clone,
+        settings: &Settings,
+    ) -> Self {
+        let rounding = Rounding::new(view);
+        let n_triangles = view.scene().triangles().len();
+        let n_segments = segments.clone().count();
+        let (origin, levels) = levels(&rounding, segments.clone(), n_triangles);
+        let n_cells = levels
+            .last()
+            .map_or(0, |level| level.first + level.columns * level.rows);
+        let mut index = Self {
+            rounding,
+            origin,
+            levels,
+            starts: vec![0; n_cells as usize + 1],
+            entries: Vec::new(),
+            covered_from: Vec::new(),
+            everywhere: Vec::new(),
+            n_triangles,
+        };
+        if n_segments == 0 {
+            return index;
+        }
+        // Marking pays when few segments are drawn: most triangles then lie far from all of them.
+        let marks = (n_segments < n_triangles / 4).then(|| index.mark(segments));
+        if !settings.count_layers {
+            index.covered_from = index.find_covered_cells(view, settings.contact_tolerance);
+        }
+        index.insert(view, marks.as_deref());
+        index
+    }
+
+    /// Whether every cell along the segment is covered in front of all of it.
+    pub(super) fn hides(&self, segment: &Segment) -> bool {
+        if self.covered_from.is_empty() {
+            return false;
+        }
+        let bounds = self.rounding.bounds(segment.image, segment.depth);
+        let finest = &self.levels[0];
+        let last = dvec2(f64::from(finest.columns), f64::from(finest.rows)) * finest.cell;
+        let inside =
+            bounds.low.cmpgt(self.origin).all() && bounds.high.cmplt(self.origin + last).all();
+        inside
+            && !self.any_cell(finest, segment, &bounds, |cell| {
+                self.covered_from[cell as usize] >= bounds.nearest
+            })
+    }
+
+    /// For each cell the largest depth of a segment in it.
+    fn mark<'s>(&self, segments: impl Iterator<Item = &'s Segment>) -> Vec<f64> {
+        let mut marks = vec![f64::NEG_INFINITY; self.starts.len() - 1];
+        for segment in segments {
+            let bounds = self.rounding.bounds(segment.image, segment.depth);
+            for level in &self.levels {
+                self.any_cell(level, segment, &bounds, |cell| {
+                    let mark = &mut marks[cell as usize];
+                    *mark = mark.max(bounds.farthest);
+                    false
+                });
+            }
+        }
+        marks
+    }
+
+    /// Puts the triangles into their cells, leaving out those that are behind everything there.
+    fn insert(&mut self, view: &ViewedScene, marks: Option<&[f64]>) {
+        let triangles = view.scene().triangles();
+        let this = &*self;
+        const CHUNK: usize = 1 << 14;
+        let parts: Vec<(Vec<(u32, u32)>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let (mut placed, mut everywhere) = (Vec::new(), Vec::new());
+                let last = ((chunk + 1) * CHUNK).min(triangles.len());
+                for triangle in (chunk * CHUNK) as u32..last as u32 {
+                    if view.triangle_turns()[triangle as usize] == Sign::Zero {
+                        continue;
+                    }
+                    let corners = triangles[triangle as usize];
+                    let Some(bounds) = this.triangle_bounds(view, corners) else {
+                        everywhere.push(triangle);
+                        continue;
+                    };
+                    let Some(level) = this.level_of(&bounds) else {
+                        continue;
+                    };
+                    this.for_box(&this.levels[level], &bounds, |cell| {
+                        let wanted = marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
+                        let seen = this
+                            .covered_from
+                            .get(cell as usize)
+                            .is_none_or(|&depth| bounds.nearest <= depth);
+                        if wanted && seen {
+                            placed.push((cell, triangle));
+                        }
+                    });
+                }
+                (placed, everywhere)
+            })
+            .collect();
+
+        for (placed, _) in &parts {
+            for &(cell, _) in placed {
+                self.starts[cell as usize + 1] += 1;
+            }
+        }
+        for cell in 0..self.starts.len() - 1 {
+            self.starts[cell + 1] += self.starts[cell];
+        }
+        self.entries = vec![0; self.starts.last().map_or(0, |&n| n as usize)];
+        let mut next = self.starts.clone();
+        for (placed, everywhere) in &parts {
+            for &(cell, triangle) in placed {
+                let slot = &mut next[cell as usize];
+                self.entries[*slot as usize] = triangle;
+                *slot += 1;
+            }
+            self.everywhere.extend_from_slice(everywhere);
+        }
+        for level in &mut self.levels {
+            let end = level.first + level.columns * level.rows;
+            level.used = self.starts[level.first as usize] < self.starts[end as usize];
+        }
+    }
+
+    /// The box of a triangle's image; `None` when the near plane cuts it.
+    fn triangle_bounds(&self, view: &ViewedScene, corners: [u32; 3]) -> Option<Bounds> {
+        let points = corners.map(|corner| view.image()[corner as usize]);
+        if view.near_plane_cuts()
+            && corners
+                .iter()
+                .any(|&c| view.sight().near_distance(c).1 == Sign::Negative)
+        {
+            let all_behind = corners
+                .iter()
+                .all(|&c| view.sight().near_distance(c).1 == Sign::Negative);
+            // Nothing of it is left: an empty box.
+            return all_behind.then_some(Bounds {
+                low: DVec2::INFINITY,
+                high: DVec2::NEG_INFINITY,
+                nearest: f64::INFINITY,
+                farthest: f64::NEG_INFINITY,
+            });
+        }
+        Some(
+            self.rounding
+                .bounds(points.map(ImagePoint::image), points.map(|p| p.depth)),
+        )
+    }
+
+    /// The finest level whose cells are at least as large as the box; `None` for an empty box or
+    /// one beside all cells.
+    fn level_of(&self, bounds: &Bounds) -> Option<usize> {
+        let size = (bounds.high - bounds.low).max_element();
+        let coarsest = self.levels.last()?;
+        let end = self.origin
+            + dvec2(f64::from(coarsest.columns), f64::from(coarsest.rows)) * coarsest.cell;
+        let beside = !(bounds.high.cmpge(self.origin).all() && bounds.low.cmple(end).all());
+        if beside && !self.has_border_cells() {
+            return None;
+        }
+        if bounds.low.x > bounds.high.x {
+            return None;
+        }
+        Some(
+            self.levels
+                .iter()
+                .position(|level| level.cell >= size)
+                .unwrap_or(self.levels.len() - 1),
+        )
+    }
+
+    /// Whether border cells stand for all that lies further out.
+    fn has_border_cells(&self) -> bool {
+        self.rounding.flat_error.is_none()
+    }
+
+    fn column(&self, level: &Level, x: f64) -> u32 {
+        (((x - self.origin.x) / level.cell) as u32).min(level.columns - 1)
+    }
+
+    fn row(&self, level: &Level, y: f64) -> u32 {
+        (((y - self.origin.y) / level.cell) as u32).min(level.rows - 1)
+    }
+
+    fn for_box(&self, level: &Level, bounds: &Bounds, mut f: impl FnMut(u32)) {
+        for row in self.row(level, bounds.low.y)..=self.row(level, bounds.high.y) {
+            let first = level.first + row * level.columns;
+            for column in self.column(level, bounds.low.x)..=self.column(level, bounds.high.x) {
+                f(first + column);
+            }
+        }
+    }
+
+    /// Whether `f` holds for any of the cells along a segment, in the order of the rows.
+    fn any_cell(
+        &self,
+        level: &Level,
+        segment: &Segment,
+        bounds: &Bounds,
+        mut f: impl FnMut(u32) -> bool,
+    ) -> bool {
+        let (first_row, last_row) = (
+            self.row(level, bounds.low.y),
+            self.row(level, bounds.high.y),
+        );
+        if first_row == last_row {
+            let first = level.first + first_row * level.columns;
+            let columns = self.column(level, bounds.low.x)..=self.column(level, bounds.high.x);
+            return columns.into_iter().any(|column| f(first + column));
+        }
+        let margin = self
+            .rounding
+            .image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
+        let [a, b] = segment.image;
+        let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
+        let is_level = a.y == b.y;
+        let at = |y: f64| {
+            let t = (y - a.y) / (b.y - a.y);
+            if t <= 0.0 {
+                a.x
+            } else if t >= 1.0 {
+                b.x
+            } else {
+                a.x + t * (b.x - a.x)
+            }
+        };
+        for row in first_row..=last_row {
+            let low = self.origin.y + f64::from(row) * level.cell - margin;
+            let high = self.origin.y + f64::from(row + 1) * level.cell + margin;
+            // The outermost rows reach as far as there is anything.
+            let from = if row == first_row || is_level {
+                a.x
+            } else {
+                at(low)
+            };
+            let to = if row == last_row || is_level {
+                b.x
+            } else {
+                at(high)
+            };
+            let (left, right) = (from.min(to) - margin, from.max(to) + margin);
+            let first = level.first + row * level.columns;
+            for column in self.column(level, left)..=self.column(level, right) {
+                if f(first + column) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// For each cell of every level the smallest depth behind which one triangle, or one for each
+    /// of its parts, covers it wholly; infinite where none does.
+    fn find_covered_cells(&self, view: &ViewedScene, contact_tolerance: f64) -> Vec<f64> {
+        let triangles = view.scene().triangles();
+        const CHUNK: usize = 1 << 14;
+        let parts: Vec<Vec<(u32, f64)>> = (0..triangles.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut covered = Vec::new();
+                let last = ((chunk + 1) * CHUNK).min(triangles.len());
+                for triangle in chunk * CHUNK..last {
+                    if view.triangle_turns()[triangle] != Sign::Zero {
+                        self.cells_within(
+                            view,
+                            triangles[triangle],
+                            contact_tolerance,
+                            |cell, depth| covered.push((cell, depth)),
+                        );
+                    }
+                }
+                covered
+            })
+            .collect();
+        let mut covered_from = vec![f64::INFINITY; self.starts.len() - 1];
+        for &(cell, depth) in parts.iter().flatten() {
+            let from = &mut covered_from[cell as usize];
+            *from = from.min(depth);
+        }
+        // A cell is covered when its four parts are, and they are covered when it is.
+        for pair in self.levels.windows(2) {
+            for_parts(&pair[0], &pair[1], |cell, parts| {
+                let behind_parts = parts
+                    .iter()
+                    .map(|part| part.map_or(f64::NEG_INFINITY, |p| covered_from[p as usize]))
+                    .fold(f64::NEG_INFINITY, f64::max);
+                let from = &mut covered_from[cell as usize];
+                *from = from.min(behind_parts);
+            });
+        }
+        for pair in self.levels.windows(2).rev() {
+            for_parts(&pair[0], &pair[1], |cell, parts| {
+                let whole = covered_from[cell as usize];
+                for &part in parts.iter().flatten() {
+                    let from = &mut covered_from[part as usize];
+                    *from = from.min(whole);
+                }
+            });
+        }
+        covered_from
+    }
+
+    /// Calls `f` with cells that lie wholly within a triangle's image, of a level two finer than
+    /// its own, and the depth behind which the triangle certainly covers.
+    fn cells_within(
+        &self,
+        view: &ViewedScene,
+        corners: [u32; 3],
+        contact_tolerance: f64,
+        mut f: impl FnMut(u32, f64),
+    ) {
+        let Some(bounds) = self.triangle_bounds(view, corners) else {
+            return;
+        };
+        let Some(own) = self.level_of(&bounds) else {
+            return;
+        };
+        if own < 2 {
+            return;
+        }
+        let Some(sine) = sine_of_sight(view, corners) else {
+            return;
+        };
+        let depth = bounds.farthest + contact_tolerance / sine;
+        let level = &self.levels[own - 2];
+        let points = corners.map(|corner| view.image()[corner as usize].image());
+        let margin = self
+            .rounding
+            .image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
+        let (first_row, last_row) = (
+            self.row(level, bounds.low.y),
+            self.row(level, bounds.high.y),
+        );
+        for row in first_row..=last_row {
+            let low = self.origin.y + f64::from(row) * level.cell - margin;
+            let high = low + level.cell + 2.0 * margin;
+            let Some((left, right)) = chord(&points, low, margin)
+                .zip(chord(&points, high, margin))
+                .map(|(a, b)| (a.0.max(b.0) + margin, a.1.min(b.1) - margin))
+            else {
+                continue;
+            };
+            let first = ((left - self.origin.x) / level.cell).ceil().max(0.0);
+            let end = ((right - self.origin.x) / level.cell).floor();
+            // Border cells stand for all that lies further out: no triangle covers that.
+            let border = if self.has_border_cells() { 1.0 } else { 0.0 };
+            if f64::from(row) < border || f64::from(row) >= f64::from(level.rows) - border {
+                continue;
+            }
+            let end = end.min(f64::from(level.columns) - border);
+            let mut column = first.max(border);
+            while column < end {
+                f(level.first + row * level.columns + column as u32, depth);
+                column += 1.0;
+            }
+        }
+    }
+}
+
+/// The sine of the flattest angle between a triangle and the sight lines through it; `None` when
+/// it is too flat to serve as a cover.
+fn sine_of_sight(view: &ViewedScene, corners: [u32; 3]) -> Option<f64> {
+    let positions = view.sight().positions();
+    let [p, q, r] = corners.map(|corner| positions[corner as usize]);
+    let normal = (q - p).cross(r - p).normalize_or_zero();
+    let sine = if view.sight().has_near_plane() {
+        let eye = view.camera().eye();
+        let farthest = [p, q, r]
+            .iter()
+            .map(|&v| (v - eye).length())
+            .fold(0.0, f64::max);
+        normal.dot(p - eye).abs() / farthest
+    } else {
+        normal.dot(view.camera().frame().forward).abs()
+    };
+    (sine > MIN_COVER_SINE).then_some(sine)
+}
+
+/// The stretch of the horizontal line at `y` within a triangle, a little too short.
+fn chord(points: &[DVec2; 3], y: f64, margin: f64) -> Option<(f64, f64)> {
+    let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+    for i in 0..3 {
+        let (a, b) = (points[i], points[(i + 1) % 3]);
+        let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
+        if a.y <= y && y <= b.y && a.y < b.y {
+            let x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+            // A nearly level side gives no sure place: what the margin does to y moves x further.
+            let slack = margin * (1.0 + (b.x - a.x).abs() / (b.y - a.y));
+            left = left.min(x + slack);
+            right = right.max(x - slack);
+        }
+    }
+    (left < right).then_some((left, right))
+}
+
+/// Calls `f` with each cell of `coarse` and its up to four parts in `fine`.
+fn for_parts(fine: &Level, coarse: &Level, mut f: impl FnMut(u32, [Option<u32>; 4])) {
+    for row in 0..coarse.rows {
+        for column in 0..coarse.columns {
+            let part = |i: u32, j: u32| {
+                let (x, y) = (2 * column + i, 2 * row + j);
+                (x < fine.columns && y < fine.rows).then(|| fine.first + y * fine.columns + x)
+            };
+            f(
+                coarse.first + row * coarse.columns + column,
+                [part(0, 0), part(1, 0), part(0, 1), part(1, 1)],
+            );
+        }
+    }
+}
+
+/// The origin and the levels for the box of all segments.
+fn levels<'s>(
+    rounding: &Rounding,
+    segments: impl Iterator<Item = &'s Segment>,
+    n_triangles: usize,
+) -> (DVec2, Vec<Level>) {
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for segment in segments {
+        let bounds = rounding.bounds(segment.image, segment.depth);
+        low = low.min(bounds.low);
+        high = high.max(bounds.high);
+    }
+    if rounding.flat_error.is_none() {
+        let widest = DVec2::splat(WIDEST_TANGENT);
+        (low, high) = (low.clamp(-widest, widest), high.clamp(-widest, widest));
+    }
+    let size = high - low;
+    if !(size.is_finite() && size.max_element() > 0.0) {
+        return (
+            DVec2::ZERO,
+            vec![Level {
+                cell: 1.0,
+                columns: 1,
+                rows: 1,
+                first: 0,
+                used: false,
+            }],
+        );
+    }
+    let n_cells = (n_triangles as f64).clamp(FINEST_CELLS.0, FINEST_CELLS.1);
+    // A flat image gets cells as long as its longer side asks for.
+    let cell = (size.x * size.y / n_cells)
+        .sqrt()
+        .max(size.max_element() / n_cells);
+    let mut level = Level {
+        cell,
+        columns: (size.x / cell) as u32 + 1,
+        rows: (size.y / cell) as u32 + 1,
+        first: 0,
+        used: false,
+    };
+    let mut levels = vec![level];
+    while level.columns > 1 || level.rows > 1 {
+        level = Level {
+            cell: level.cell * 2.0,
+            columns: level.columns.div_ceil(2),
+            rows: level.rows.div_ceil(2),
+            first: level.first + level.columns * level.rows,
+            used: false,
+        };
+        levels.push(level);
+    }
+    (low, levels)
+}
+
+/// Visits each triangle near a segment once; work space of one thread.
+#[derive(Debug)]
+pub(super) struct Visitor {
+    /// The number of the last segment that was offered each triangle.
+    seen: Vec<u32>,
+    segment: u32,
+}
+
+impl Visitor {
+    /// Work space for queries of `index`.
+    pub(super) fn new(index: Option<&ImageIndex>) -> Self {
+        Self {
+            seen: vec![0; index.map_or(0, |index| index.n_triangles)],
+            segment: 0,
+        }
+    }
+
+    /// Whether `test` holds for any triangle that may cover some of `segment`.
+    ///
+    /// Large triangles come first, since they are the likeliest to hide all of it.
+    pub(super) fn any(
+        &mut self,
+        index: &ImageIndex,
+        view: &ViewedScene,
+        segment: &Segment,
+        mut test: impl FnMut(u32) -> bool,
+    ) -> bool {
+        self.segment = self.segment.wrapping_add(1);
+        if self.segment == 0 {
+            self.seen.fill(0);
+            self.segment = 1;
+        }
+        if index.everywhere.iter().any(|&triangle| test(triangle)) {
+            return true;
+        }
+        let bounds = index.rounding.bounds(segment.image, segment.depth);
+        let separation = Separation::new(index, segment, &bounds);
+        let (seen, number) = (&mut self.seen, self.segment);
+        index
+            .levels
+            .iter()
+            .rev()
+            .filter(|level| level.used)
+            .any(|level| {
+                index.any_cell(level, segment, &bounds, |cell| {
+                    let cell = cell as usize;
+                    let range = index.starts[cell] as usize..index.starts[cell + 1] as usize;
+                    index.entries[range].iter().any(|&triangle| {
+                        let last = &mut seen[triangle as usize];
+                        if *last == number {
+                            return false;
+                        }
+                        *last = number;
+                        let corners = view.scene().triangles()[triangle as usize];
+                        let points = corners.map(|corner| view.image()[corner as usize]);
+                        !separation.apart(points) && test(triangle)
+                    })
+                })
+            })
+    }
+}
+
+/// Quick tests that a triangle's image does not meet a segment's, or lies behind it.
+struct Separation<'i> {
+    rounding: &'i Rounding,
+    bounds: Bounds,
+    start: DVec2,
+    along: DVec2,
+    size: f64,
+}
+
+impl<'i> Separation<'i> {
+    fn new(index: &'i ImageIndex, segment: &Segment, bounds: &Bounds) -> Self {
+        let [a, b] = segment.image;
+        Self {
+            rounding: &index.rounding,
+            bounds: *bounds,
+            start: a,
+            along: b - a,
+            size: bounds.low.abs().max(bounds.high.abs()).element_sum(),
+        }
+    }
+
+    #[inline]
+    fn apart(&self, points: [ImagePoint; 3]) -> bool {
+        let farthest = self.bounds.farthest + self.rounding.depth_error;
+        if points.iter().all(|p| p.depth > farthest) {
+            return true;
+        }
+        let points = points.map(ImagePoint::image);
+        let low = points[0].min(points[1]).min(points[2]);
+        let high = points[0].max(points[1]).max(points[2]);
+        let size = low.abs().max(high.abs()).element_sum().max(self.size);
+        let error = self.rounding.image_error(size);
+        if low.cmpgt(self.bounds.high + error).any() || high.cmplt(self.bounds.low - error).any() {
+            return true;
+        }
+        // Each factor of the area is off by two errors at most.
+        let offsets = points.map(|p| p - self.start);
+        let reach = offsets
+            .iter()
+            .fold(self.along.abs(), |reach, d| reach.max(d.abs()));
+        let slack = 8.0 * error * (reach.element_sum() + error);
+        let sides = offsets.map(|offset| self.along.perp_dot(offset));
+        sides.iter().all(|&side| side > slack) || sides.iter().all(|&side| side < -slack)
+    }
+}

@@ -1,0 +1,69 @@
+//! Line engines: which parts of each drawn edge are hidden, and how often.
+//!
+//! | engine | asks of an edge | cost |
+//! |---|---|---|
+//! | [`roberts`] | every triangle whose image is near | edges × triangles near them |
+//!
+//! All of them answer the same question with the same result, to the last interval:
+//!
+//! A triangle *covers* a point of a segment when the point's image lies in the closed image of the
+//! triangle and the triangle is strictly in front. It covers both sides of the segment, except
+//! where the segment's image runs along one of its borders; there it covers only the side on which
+//! its third vertex lies. A point is hidden when both its sides are covered.
+
+pub mod roberts;
+
+mod index;
+mod segment;
+mod shadow;
+mod sweep;
+
+use crate::classify::ViewedScene;
+use crate::visibility::Visibility;
+
+/// Settings that every line engine obeys.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Settings {
+    /// A triangle does not cover a segment both of whose ends lie within this distance of its
+    /// plane, in model units. Zero: contact is exact.
+    pub contact_tolerance: f64,
+    /// Whether `qi` is counted in full. Otherwise it is 1 wherever something hides, which lets
+    /// an engine stop at the first thing that does.
+    pub count_layers: bool,
+    /// Whether to find the parts that a nearer drawn edge with the same image draws already.
+    pub find_doubled: bool,
+}
+
+/// The line engines by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Engine {
+    /// The fastest that can draw the scene.
+    #[default]
+    Auto,
+    /// Every edge against the triangles near its image.
+    Roberts,
+    /// Every edge against every triangle: slow, and so simple that it checks the others.
+    AllPairs,
+}
+
+/// Finds the spans of all drawn edges of `view`, in their order.
+///
+/// Also returns which engine did it, by its name on the command line, and how much work it was.
+pub fn solve(
+    view: &ViewedScene,
+    engine: Engine,
+    settings: &Settings,
+) -> (Visibility, Counts, &'static str) {
+    let (name, (visibility, counts)) = match engine {
+        Engine::Auto | Engine::Roberts => ("roberts", roberts::solve(view, settings)),
+        Engine::AllPairs => ("all-pairs", roberts::solve_all_pairs(view, settings)),
+    };
+    (visibility, counts, name)
+}
+
+/// How much work an engine did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Pairs of an edge and a triangle (or contour edge) that were tested.
+    pub candidate_pairs: u64,
+}

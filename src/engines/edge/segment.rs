@@ -1,0 +1,62 @@
+//! A drawn edge as the engines see it: its ends, what the near plane leaves of it, its image.
+
+use crate::classify::ViewedScene;
+use crate::predicates::{Cut, CutPlane, Sign};
+use glam::DVec2;
+
+/// An edge clipped by the near plane, with its rounded image for quick rejection.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Segment {
+    /// Number of the edge in the topology.
+    pub edge: u32,
+    /// Its vertices, in the direction of the parameter.
+    pub ends: [u32; 2],
+    /// Where the kept part begins.
+    pub from: Cut,
+    /// Where the kept part ends.
+    pub to: Cut,
+    /// Rounded images of the kept part's ends.
+    pub image: [DVec2; 2],
+    /// Rounded depths of the kept part's ends, along the direction of view.
+    pub depth: [f64; 2],
+}
+
+impl Segment {
+    /// The part of an edge that the near plane keeps; `None` when nothing of it is left.
+    pub(super) fn new(view: &ViewedScene, edge: u32) -> Option<Self> {
+        let ends = view.scene().topology().edge(edge);
+        let sight = view.sight();
+        let (mut from, mut to) = (Cut::START, Cut::END);
+        if view.near_plane_cuts() {
+            let [(a, a_sign), (b, b_sign)] = ends.map(|end| sight.near_distance(end));
+            match (a_sign, b_sign) {
+                (Sign::Negative, Sign::Positive) => {
+                    from = sight.cut(ends, CutPlane::Near, [a, b]);
+                }
+                (Sign::Positive, Sign::Negative) => {
+                    to = sight.cut(ends, CutPlane::Near, [a, b]);
+                }
+                (Sign::Negative, _) | (_, Sign::Negative) => return None,
+                _ => {}
+            }
+        }
+        let points = ends.map(|end| view.image()[end as usize]);
+        let points = [from.t, to.t].map(|t| points[0].towards(points[1], t));
+        Some(Self {
+            edge,
+            ends,
+            from,
+            to,
+            image: points.map(|point| point.image()),
+            depth: points.map(|point| point.depth),
+        })
+    }
+
+    /// Smallest and largest depth.
+    pub(super) fn depth_range(&self) -> (f64, f64) {
+        (
+            self.depth[0].min(self.depth[1]),
+            self.depth[0].max(self.depth[1]),
+        )
+    }
+}

@@ -1,0 +1,113 @@
+//! From the covered parts of one segment to its spans: a sweep along the parameter.
+
+use super::segment::Segment;
+use super::shadow::{Cover, Sides};
+use crate::predicates::{Cut, Sight};
+use crate::visibility::Span;
+use std::cmp::Ordering;
+
+/// Collects what covers or doubles one segment, then sweeps it; reused from segment to segment.
+#[derive(Debug, Default)]
+pub(super) struct Sweep {
+    events: Vec<Event>,
+    spans: Vec<Span>,
+}
+
+/// A change of one of the counts at a cut.
+#[derive(Debug, Clone, Copy)]
+struct Event {
+    at: Cut,
+    /// What is added to the counts of layers on the left and right, and of doubling edges.
+    change: [i32; 3],
+}
+
+impl Sweep {
+    /// Forgets everything collected.
+    pub(super) fn clear(&mut self) {
+        self.events.clear();
+    }
+
+    /// Adds a part that a triangle covers.
+    pub(super) fn add_cover(&mut self, cover: &Cover) {
+        let change = match cover.sides {
+            Sides::Both => [1, 1, 0],
+            Sides::Left => [1, 0, 0],
+            Sides::Right => [0, 1, 0],
+        };
+        self.add(cover, change);
+    }
+
+    /// Adds a part that another edge draws.
+    pub(super) fn add_doubled(&mut self, cover: &Cover) {
+        self.add(cover, [0, 0, 1]);
+    }
+
+    fn add(&mut self, cover: &Cover, change: [i32; 3]) {
+        self.events.push(Event {
+            at: cover.from,
+            change,
+        });
+        self.events.push(Event {
+            at: cover.to,
+            change: change.map(|x| -x),
+        });
+    }
+
+    /// The same span and no other, for a segment of which nothing more need be known.
+    pub(super) fn only(&mut self, span: Span) -> &[Span] {
+        self.spans.clear();
+        self.spans.push(span);
+        &self.spans
+    }
+
+    /// The spans of `segment` from what was added since it was cleared.
+    ///
+    /// Unless `count_layers`, the quantitative invisibility is 0 or 1.
+    pub(super) fn spans(
+        &mut self,
+        sight: &Sight,
+        segment: &Segment,
+        count_layers: bool,
+    ) -> &[Span] {
+        let ends = segment.ends;
+        // Equal cuts may come in any order: their changes are added before a span begins.
+        self.events
+            .sort_unstable_by(|a, b| sight.cut_order(ends, &a.at, &b.at));
+        self.spans.clear();
+        let mut counts = [0i32; 3];
+        let mut start = segment.from;
+        for event in &self.events {
+            if sight.cut_order(ends, &start, &event.at) == Ordering::Less {
+                push(&mut self.spans, &start, &event.at, counts, count_layers);
+                start = event.at;
+            }
+            for (count, change) in counts.iter_mut().zip(event.change) {
+                *count += change;
+            }
+        }
+        if sight.cut_order(ends, &start, &segment.to) == Ordering::Less || self.spans.is_empty() {
+            push(&mut self.spans, &start, &segment.to, counts, count_layers);
+        }
+        &self.spans
+    }
+}
+
+/// Appends a span, or lengthens the last one when nothing changes.
+fn push(spans: &mut Vec<Span>, from: &Cut, to: &Cut, counts: [i32; 3], count_layers: bool) {
+    let [left, right, doubled] = counts;
+    let layers = left.min(right).max(0) as u32;
+    let qi = if count_layers { layers } else { layers.min(1) };
+    let doubled = doubled > 0;
+    // Rounding may put two cuts the other way round by a unit in the last place.
+    let t0 = spans.last().map_or(from.t, |last: &Span| last.t1);
+    let t1 = to.t.max(t0);
+    match spans.last_mut() {
+        Some(last) if last.qi == qi && last.doubled == doubled => last.t1 = t1,
+        _ => spans.push(Span {
+            t0,
+            t1,
+            qi,
+            doubled,
+        }),
+    }
+}

@@ -1,0 +1,7 @@
+//! The algorithms that decide what is hidden.
+//!
+//! | family | from | to |
+//! |---|---|---|
+//! | [`edge`] | a viewed scene | spans of quantitative invisibility along its edges |
+
+pub mod edge;
