@@ -41,4 +41,6 @@ pub mod engines;
 
 pub mod strokes;
 
+pub mod chain;
+
 pub mod plot;

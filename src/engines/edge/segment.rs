@@ -51,12 +51,4 @@ impl Segment {
             depth: points.map(|point| point.depth),
         })
     }
-
-    /// Smallest and largest depth.
-    pub(super) fn depth_range(&self) -> (f64, f64) {
-        (
-            self.depth[0].min(self.depth[1]),
-            self.depth[0].max(self.depth[1]),
-        )
-    }
 }

@@ -1,0 +1,252 @@
+//! From spans to strokes: which pieces are drawn, and how they chain into long polylines.
+//!
+//! Pieces of edges meet where they share a vertex of the mesh, never because they are near each
+//! other. At a vertex where several meet, the pair that goes on straightest is joined first, since
+//! corners slow a pen down:
+//!
+//! ```text
+//!        ╲   ╱               the two straight lines go through,
+//!         ╲ ╱                and the fifth piece ends here
+//!   ───────●
+//!         ╱ ╲
+//!        ╱   ╲
+//! ```
+
+use crate::classify::ViewedScene;
+use crate::strokes::{Drawing, StrokeKind};
+use crate::visibility::{Span, Visibility};
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// What becomes of the spans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChainOptions {
+    /// Keep hidden spans too.
+    pub hidden: bool,
+    /// One two-point stroke for each maximal visible span and each hidden one of constant `qi`;
+    /// nothing is joined, dropped or left out because it is drawn already.
+    pub exact: bool,
+    /// Join only pieces of one kind and one `qi`, so that each stroke's attributes hold for all of
+    /// it. Otherwise all visible pieces join, and all hidden ones, as one pen draws them.
+    pub apart_by_kind: bool,
+    /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between
+    /// two visible pieces of one edge are closed. In image units; zero for none.
+    pub shortest: f64,
+}
+
+/// A part of an edge that is drawn.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    kind: StrokeKind,
+    qi: u32,
+    points: [DVec2; 2],
+    /// The mesh's vertex at each end, or [`FREE`] where a cut ends the piece.
+    ends: [u32; 2],
+}
+
+/// The end of a piece at which no other can join.
+const FREE: u32 = u32::MAX;
+
+/// Turns the spans of all drawn edges into strokes, in the order of the edges.
+///
+/// O(pieces log pieces), except at vertices where very many edges meet, which are joined in order.
+pub fn chain(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -> Drawing {
+    let pieces = pieces(view, visibility, options);
+    let mut drawing = Drawing::default();
+    if options.exact {
+        for piece in &pieces {
+            drawing.push(piece.kind, piece.qi, piece.points);
+        }
+        return drawing;
+    }
+    let links = link(&pieces, options.apart_by_kind);
+    let mut is_drawn = vec![false; pieces.len()];
+    let mut points = Vec::new();
+    // Trails with loose ends first, from the end that comes first; then closed ones.
+    for closed in [false, true] {
+        for start in 0..2 * pieces.len() as u32 {
+            let is_loose = links[start as usize] == FREE;
+            if is_drawn[start as usize / 2] || !(closed || is_loose) {
+                continue;
+            }
+            points.clear();
+            let mut end = start;
+            loop {
+                let piece = &pieces[end as usize / 2];
+                is_drawn[end as usize / 2] = true;
+                if points.is_empty() {
+                    points.push(piece.points[end as usize % 2]);
+                }
+                points.push(piece.points[1 - end as usize % 2]);
+                end = links[(end ^ 1) as usize];
+                if end == FREE || is_drawn[end as usize / 2] {
+                    break;
+                }
+            }
+            let first = &pieces[start as usize / 2];
+            if first.qi == 0 && is_shorter(&points, options.shortest) {
+                continue;
+            }
+            drawing.push(first.kind, first.qi, points.iter().copied());
+        }
+    }
+    drawing
+}
+
+fn is_shorter(points: &[DVec2], limit: f64) -> bool {
+    let mut length = 0.0;
+    for pair in points.windows(2) {
+        length += pair[0].distance(pair[1]);
+        if length >= limit {
+            return false;
+        }
+    }
+    true
+}
+
+/// The pieces to draw, in the order of edges and spans.
+fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -> Vec<Piece> {
+    const CHUNK: usize = 4096;
+    let parts: Vec<Vec<Piece>> = view
+        .drawn()
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, drawn)| {
+            let mut pieces = Vec::with_capacity(drawn.len());
+            let mut spans = Vec::new();
+            for (i, drawn) in drawn.iter().enumerate() {
+                let ends = view.scene().topology().edge(drawn.edge);
+                let images = ends.map(|end| view.image()[end as usize]);
+                let at = |t: f64| {
+                    // Ends are taken as they are, so that joined pieces share the very point.
+                    if t == 0.0 {
+                        images[0].image()
+                    } else if t == 1.0 {
+                        images[1].image()
+                    } else {
+                        images[0].towards(images[1], t).image()
+                    }
+                };
+                spans.clear();
+                spans.extend_from_slice(visibility.spans(chunk * CHUNK + i));
+                if !options.exact && options.shortest > 0.0 {
+                    close_gaps(&mut spans, |t0, t1| {
+                        at(t0).distance(at(t1)) < options.shortest
+                    });
+                }
+                merge(&mut spans, options);
+                let kept = spans.iter().filter(|span| span.qi == 0 || options.hidden);
+                for span in kept.filter(|span| options.exact || !span.doubled) {
+                    pieces.push(Piece {
+                        kind: drawn.kind,
+                        qi: span.qi,
+                        points: [at(span.t0), at(span.t1)],
+                        ends: [
+                            if span.t0 == 0.0 { ends[0] } else { FREE },
+                            if span.t1 == 1.0 { ends[1] } else { FREE },
+                        ],
+                    });
+                }
+            }
+            pieces
+        })
+        .collect();
+    parts.concat()
+}
+
+/// Makes short hidden spans between two visible ones visible.
+fn close_gaps(spans: &mut [Span], is_short: impl Fn(f64, f64) -> bool) {
+    let mut start = 0;
+    while start < spans.len() {
+        let end = start + spans[start..].iter().take_while(|span| span.qi > 0).count();
+        if end > start && start > 0 && end < spans.len() && is_short(spans[start].t0, spans[end].t0)
+        {
+            for span in &mut spans[start..end] {
+                span.qi = 0;
+            }
+        }
+        start = end.max(start + 1);
+    }
+}
+
+/// Joins neighbouring spans that are drawn alike.
+fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
+    spans.dedup_by(|next, last| {
+        let same_doubling = options.exact || next.doubled == last.doubled;
+        let as_one_pen = !options.exact && !options.apart_by_kind;
+        let same_layers = next.qi == last.qi || (as_one_pen && next.qi > 0 && last.qi > 0);
+        let alike = same_doubling && same_layers;
+        if alike {
+            last.t1 = next.t1;
+        }
+        alike
+    });
+}
+
+/// For each end of each piece (numbered `2 · piece + side`) the end it is joined to, or [`FREE`].
+fn link(pieces: &[Piece], apart_by_kind: bool) -> Vec<u32> {
+    let mut links = vec![FREE; 2 * pieces.len()];
+    let class = |piece: &Piece| {
+        if apart_by_kind {
+            (piece.kind as u32, piece.qi)
+        } else {
+            (0, piece.qi.min(1))
+        }
+    };
+    // Ends by vertex, then class, then number: ends that may join are neighbours.
+    let mut ends: Vec<(u32, (u32, u32), u32)> = (0..links.len() as u32)
+        .filter_map(|end| {
+            let piece = &pieces[end as usize / 2];
+            let vertex = piece.ends[end as usize % 2];
+            (vertex != FREE).then(|| (vertex, class(piece), end))
+        })
+        .collect();
+    ends.par_sort_unstable();
+    let mut pairs = Vec::new();
+    for group in ends.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        match group {
+            [_] => {}
+            &[(.., a), (.., b)] => {
+                links[a as usize] = b;
+                links[b as usize] = a;
+            }
+            _ => {
+                straightest_pairs(pieces, group.iter().map(|&(.., end)| end), &mut pairs);
+                for &(_, a, b) in &pairs {
+                    if links[a as usize] == FREE && links[b as usize] == FREE {
+                        links[a as usize] = b;
+                        links[b as usize] = a;
+                    }
+                }
+            }
+        }
+    }
+    links
+}
+
+/// Most ends at one vertex of which every pair is weighed; more are paired in order.
+const MAX_WEIGHED_ENDS: usize = 64;
+
+/// Pairs of ends at one vertex, those that go on straightest first.
+fn straightest_pairs(
+    pieces: &[Piece],
+    ends: impl Iterator<Item = u32> + Clone,
+    pairs: &mut Vec<(f64, u32, u32)>,
+) {
+    let direction = |end: u32| {
+        let piece = &pieces[end as usize / 2];
+        let side = end as usize % 2;
+        (piece.points[1 - side] - piece.points[side]).normalize_or_zero()
+    };
+    pairs.clear();
+    let n_ends = ends.clone().count();
+    for (i, a) in ends.clone().enumerate() {
+        let others = ends.clone().skip(i + 1);
+        let others = others.take(if n_ends > MAX_WEIGHED_ENDS { 1 } else { n_ends });
+        // −1 is straight on, 1 is straight back.
+        pairs.extend(others.map(|b| (direction(a).dot(direction(b)), a, b)));
+    }
+    if n_ends <= MAX_WEIGHED_ENDS {
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    }
+}
