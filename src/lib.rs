@@ -23,14 +23,26 @@
 
 pub mod mesh;
 
+pub mod arrange;
+
 pub mod topology;
 
 pub mod scene;
 
 pub mod view;
 
+pub mod framing;
+
 pub mod visibility;
 
 pub mod strokes;
 
+pub mod draw;
+
 pub mod plot;
+
+pub mod page;
+
+pub mod writers;
+
+pub mod stats;

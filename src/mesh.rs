@@ -128,14 +128,21 @@ impl Mesh {
         for (face, range) in soup.face_starts.windows(2).enumerate() {
             for &vertex in &soup.corners[range[0] as usize..range[1] as usize] {
                 if vertex as usize >= n_vertices {
-                    return Err(MeshError::MissingVertex { face, vertex, n_vertices });
+                    return Err(MeshError::MissingVertex {
+                        face,
+                        vertex,
+                        n_vertices,
+                    });
                 }
             }
         }
         let mut repairs = Repairs::default();
         let first_equal = first_equal_position(&soup.positions);
-        repairs.welded_vertices =
-            first_equal.iter().enumerate().filter(|&(i, &first)| i as u32 != first).count();
+        repairs.welded_vertices = first_equal
+            .iter()
+            .enumerate()
+            .filter(|&(i, &first)| i as u32 != first)
+            .count();
 
         let mut mesh = Self {
             positions: Vec::with_capacity(n_vertices - repairs.welded_vertices),
@@ -156,7 +163,8 @@ impl Mesh {
                     mesh.corners.push(vertex);
                 }
             }
-            while mesh.corners.len() > start + 1 && mesh.corners.last() == Some(&mesh.corners[start])
+            while mesh.corners.len() > start + 1
+                && mesh.corners.last() == Some(&mesh.corners[start])
             {
                 mesh.corners.pop();
                 repairs.repeated_corners += 1;
@@ -230,7 +238,9 @@ impl Mesh {
     /// Smallest box around all vertices as (lowest, highest) corner; `None` without vertices.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let (first, rest) = self.positions.split_first()?;
-        Some(rest.iter().fold((*first, *first), |(low, high), &p| (low.min(p), high.max(p))))
+        Some(rest.iter().fold((*first, *first), |(low, high), &p| {
+            (low.min(p), high.max(p))
+        }))
     }
 }
 
@@ -242,7 +252,9 @@ fn first_equal_position(positions: &[DVec3]) -> Vec<u32> {
         .iter()
         .enumerate()
         .map(|(i, &p)| {
-            *first.entry((p + DVec3::ZERO).to_array().map(f64::to_bits)).or_insert(i as u32)
+            *first
+                .entry((p + DVec3::ZERO).to_array().map(f64::to_bits))
+                .or_insert(i as u32)
         })
         .collect()
 }
