@@ -21,6 +21,8 @@
 //! World: model units, right-handed, z up. Image: see [`view`]. Page: millimetres, see [`plot`].
 //! Angles are in radians unless a name ends in `_deg`.
 
+pub mod read;
+
 pub mod mesh;
 
 pub mod arrange;
