@@ -17,12 +17,7 @@ impl Scene {
     pub fn new(mesh: Mesh) -> Self {
         let topology = Topology::new(&mesh);
         let (triangles, triangle_faces) = (Vec::new(), Vec::new());
-        Self {
-            mesh,
-            topology,
-            triangles,
-            triangle_faces,
-        }
+        Self { mesh, topology, triangles, triangle_faces }
     }
 
     /// The mesh.
