@@ -29,7 +29,11 @@ pub mod arrange;
 
 pub mod topology;
 
+pub mod triangulate;
+
 pub mod scene;
+
+pub mod predicates;
 
 pub mod view;
 

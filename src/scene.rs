@@ -2,6 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::topology::Topology;
+use crate::triangulate::triangulate;
 
 /// A mesh with everything about it that does not depend on the view.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -16,7 +17,7 @@ impl Scene {
     /// Triangulates the faces of `mesh` and finds its edges.
     pub fn new(mesh: Mesh) -> Self {
         let topology = Topology::new(&mesh);
-        let (triangles, triangle_faces) = (Vec::new(), Vec::new());
+        let (triangles, triangle_faces) = triangulate(&mesh);
         Self { mesh, topology, triangles, triangle_faces }
     }
 

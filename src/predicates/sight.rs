@@ -1,0 +1,366 @@
+//! Points seen from one place: signs and estimates of turns and depths by vertex number.
+
+use super::{Estimate, Sign, TRIPLE_PRODUCT_ERROR, exact};
+use crate::view::{Camera, Projection};
+use dashu_int::IBig;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Where the sight lines come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Viewpoint {
+    /// All sight lines pass through the eye.
+    Eye(DVec3),
+    /// All sight lines run along this direction, away from the observer.
+    Direction(DVec3),
+}
+
+/// The exponents of the lowest and highest bits of coordinates for which no triple product of
+/// differences under- or overflows.
+const FILTER_WINDOW: (i32, i32) = (-320, 320);
+
+/// The points of a scene as one camera sees them; answers every question of [`super`].
+#[derive(Debug)]
+pub struct Sight<'a> {
+    positions: &'a [DVec3],
+    viewpoint: Viewpoint,
+    forward: DVec3,
+    near: f64,
+    /// `position − eye` in perspective, the position itself otherwise.
+    relative: Vec<DVec3>,
+    in_window: bool,
+    n_exact: AtomicU64,
+}
+
+/// A plane as an affine function of a point, with what is needed to bound its error.
+///
+/// The function is `normal · (x − base)` up to sign; `spread` holds the sums of the absolute
+/// values of the terms of each component of `normal`.
+#[derive(Debug, Clone, Copy)]
+pub struct PlaneThrough {
+    normal: DVec3,
+    spread: DVec3,
+    base: DVec3,
+}
+
+impl PlaneThrough {
+    #[inline]
+    fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
+        let (a_size, b_size) = (a.abs(), b.abs());
+        Self {
+            normal: a.cross(b),
+            spread: DVec3::new(
+                a_size.y * b_size.z + a_size.z * b_size.y,
+                a_size.z * b_size.x + a_size.x * b_size.z,
+                a_size.x * b_size.y + a_size.y * b_size.x,
+            ),
+            base,
+        }
+    }
+
+    #[inline]
+    fn negated_at(&self, x: DVec3) -> Estimate {
+        let d = x - self.base;
+        Estimate {
+            value: -self.normal.dot(d),
+            error: TRIPLE_PRODUCT_ERROR * self.spread.dot(d.abs()),
+        }
+    }
+}
+
+impl<'a> Sight<'a> {
+    /// The points of `positions`, all finite, as `camera` sees them. O(points).
+    pub fn new(positions: &'a [DVec3], camera: &Camera) -> Self {
+        let forward = camera.forward();
+        let (viewpoint, near) = match camera.projection() {
+            Projection::Perspective { near, .. } => (Viewpoint::Eye(camera.eye()), near),
+            Projection::Orthographic => (Viewpoint::Direction(forward), 0.0),
+        };
+        let relative = match viewpoint {
+            Viewpoint::Eye(eye) => positions.par_iter().map(|&p| p - eye).collect(),
+            Viewpoint::Direction(_) => positions.to_vec(),
+        };
+        let own = [forward, camera.eye()];
+        let numbers = positions.par_iter().chain(own.par_iter());
+        let range = numbers
+            .filter_map(|p| exact::bit_range(p.to_array()))
+            .reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let in_window =
+            range.is_none_or(|(low, high)| low >= FILTER_WINDOW.0 && high <= FILTER_WINDOW.1);
+        Self {
+            positions,
+            viewpoint,
+            forward,
+            near,
+            relative,
+            in_window,
+            n_exact: AtomicU64::new(0),
+        }
+    }
+
+    /// The points.
+    pub fn positions(&self) -> &'a [DVec3] {
+        self.positions
+    }
+
+    /// Where the sight lines come from.
+    pub fn viewpoint(&self) -> Viewpoint {
+        self.viewpoint
+    }
+
+    /// How many questions the floating-point filter could not answer so far.
+    pub fn n_exact(&self) -> u64 {
+        self.n_exact.load(Relaxed)
+    }
+
+    #[inline]
+    pub(super) fn count_exact(&self) {
+        self.n_exact.fetch_add(1, Relaxed);
+    }
+
+    #[inline]
+    fn position(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    #[inline]
+    fn relative(&self, vertex: u32) -> DVec3 {
+        self.relative[vertex as usize]
+    }
+
+    /// An estimate's sign, unless the numbers are outside the window in which its bound holds.
+    #[inline]
+    fn decided(&self, estimate: Estimate) -> Option<Sign> {
+        if self.in_window { estimate.sign() } else { None }
+    }
+
+    /// The plane of sight through two vertices: its value at `x` is `turn(p, q, x)`.
+    #[inline]
+    pub fn sight_plane(&self, p: u32, q: u32) -> PlaneThrough {
+        match self.viewpoint {
+            Viewpoint::Eye(_) => {
+                PlaneThrough::new(self.relative(p), self.relative(q), DVec3::ZERO)
+            }
+            Viewpoint::Direction(forward) => {
+                let base = self.position(p);
+                PlaneThrough::new(forward, self.position(q) - base, base)
+            }
+        }
+    }
+
+    /// The plane of a triangle: its value at `x` is `depth(p, q, r; x)`.
+    #[inline]
+    pub fn triangle_plane(&self, [p, q, r]: [u32; 3]) -> PlaneThrough {
+        let base = self.position(p);
+        PlaneThrough::new(self.position(q) - base, self.position(r) - base, base)
+    }
+
+    /// `turn(p, q, x)` and its sign, for the plane of sight through `p` and `q`.
+    ///
+    /// The estimate has the sign that is returned.
+    #[inline]
+    pub fn turn_at(&self, plane: &PlaneThrough, p: u32, q: u32, x: u32) -> (Estimate, Sign) {
+        if x == p || x == q {
+            return (Estimate::ZERO, Sign::Zero);
+        }
+        let estimate = plane.negated_at(self.relative(x));
+        match self.decided(estimate) {
+            Some(sign) => (estimate, sign),
+            None => {
+                self.count_exact();
+                let [value, _] = self.exact_turns(p, q, [x, x]);
+                undecided(estimate, exact::sign(&value))
+            }
+        }
+    }
+
+    /// `depth(p, q, r; x)` and its sign, for the plane of the triangle.
+    ///
+    /// The estimate has the sign that is returned.
+    #[inline]
+    pub fn depth_at(&self, plane: &PlaneThrough, triangle: [u32; 3], x: u32) -> (Estimate, Sign) {
+        if triangle.contains(&x) {
+            return (Estimate::ZERO, Sign::Zero);
+        }
+        let estimate = plane.negated_at(self.position(x));
+        match self.decided(estimate) {
+            Some(sign) => (estimate, sign),
+            None => {
+                self.count_exact();
+                let [value, _] = self.exact_depths(triangle, [x, x]);
+                undecided(estimate, exact::sign(&value))
+            }
+        }
+    }
+
+    /// The sign of `turn(a, b, c)`: positive when the image of the path turns counter-clockwise.
+    #[inline]
+    pub fn turn(&self, a: u32, b: u32, c: u32) -> Sign {
+        self.turn_at(&self.sight_plane(a, b), a, b, c).1
+    }
+
+    /// The sign of `depth(p, q, r; x)`.
+    #[inline]
+    pub fn depth(&self, triangle: [u32; 3], x: u32) -> Sign {
+        self.depth_at(&self.triangle_plane(triangle), triangle, x).1
+    }
+
+    /// Which way a polygon faces: the sign of its Newell normal times the direction to the eye.
+    ///
+    /// Positive is front, negative back, zero edge-on. Newell's sum equals the sum over a fan of
+    /// triangles, which is what is evaluated here. O(corners).
+    pub fn facing(&self, polygon: &[u32]) -> Sign {
+        let &[first, ref rest @ ..] = polygon else { return Sign::Zero };
+        if let &[second, third] = rest {
+            return self.turn(first, second, third);
+        }
+        let mut sum = Estimate::ZERO;
+        for pair in rest.windows(2) {
+            let plane = self.sight_plane(first, pair[0]);
+            let term = plane.negated_at(self.relative(pair[1]));
+            sum.value += term.value;
+            sum.error += term.error + sum.value.abs() * f64::EPSILON;
+        }
+        if let Some(sign) = self.decided(sum) {
+            return sign;
+        }
+        self.count_exact();
+        let viewpoint = match self.viewpoint {
+            Viewpoint::Eye(eye) => exact::Towards::Point(eye),
+            Viewpoint::Direction(forward) => exact::Towards::Along(forward),
+        };
+        exact::facing(polygon.iter().map(|&v| self.position(v)), viewpoint)
+    }
+
+    /// Whether the images of two vertices are the same point.
+    pub fn same_image(&self, a: u32, b: u32) -> bool {
+        let (p, q) = (self.relative(a), self.relative(b));
+        let plane = match self.viewpoint {
+            Viewpoint::Eye(_) => PlaneThrough::new(p, q, DVec3::ZERO),
+            Viewpoint::Direction(forward) => PlaneThrough::new(forward, q - p, DVec3::ZERO),
+        };
+        let differs = plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any();
+        if self.in_window && differs {
+            return false;
+        }
+        self.count_exact();
+        match self.viewpoint {
+            Viewpoint::Eye(eye) => exact::collinear(eye, self.position(a), self.position(b)),
+            Viewpoint::Direction(forward) => {
+                exact::parallel(self.position(a), self.position(b), forward)
+            }
+        }
+    }
+
+    /// Whether there is a near plane, which only perspective has.
+    pub fn has_near_plane(&self) -> bool {
+        matches!(self.viewpoint, Viewpoint::Eye(_))
+    }
+
+    /// `(x − eye)·forward − near · forward·forward` and its sign: zero or positive is kept.
+    ///
+    /// Without a near plane every point is kept. The estimate has the sign that is returned.
+    #[inline]
+    pub fn near_distance(&self, x: u32) -> (Estimate, Sign) {
+        if !self.has_near_plane() {
+            return (Estimate { value: 1.0, error: 0.0 }, Sign::Positive);
+        }
+        let d = self.relative(x);
+        let limit = self.near * self.forward.length_squared();
+        let estimate = Estimate {
+            value: d.dot(self.forward) - limit,
+            error: TRIPLE_PRODUCT_ERROR * (d.abs().dot(self.forward.abs()) + limit),
+        };
+        match self.decided(estimate) {
+            Some(sign) => (estimate, sign),
+            None => {
+                self.count_exact();
+                let [value, _] = self.exact_near_distances([x, x]);
+                undecided(estimate, exact::sign(&value))
+            }
+        }
+    }
+
+    /// The plane of sight through the near plane's cut of `triangle`, at both of `ends`.
+    ///
+    /// Multiplied by the opposite of the triangle's turn, it is positive on the kept side.
+    pub fn near_cut(&self, triangle: [u32; 3], ends: [u32; 2]) -> [Sign; 2] {
+        self.count_exact();
+        self.exact_near_cut_values(triangle, ends).map(|value| exact::sign(&value))
+    }
+
+    /// Whether both ends of a segment lie within `distance` of a triangle's plane.
+    ///
+    /// The triangle must have an area. Decided exactly for the number `distance`.
+    pub fn in_contact(&self, triangle: [u32; 3], ends: [u32; 2], distance: f64) -> bool {
+        let plane = self.triangle_plane(triangle);
+        let limit = distance * plane.normal.length();
+        ends.iter().all(|&x| {
+            let (depth, _) = self.depth_at(&plane, triangle, x);
+            // The limit is rounded, and the normal it stems from has the error of its spread.
+            let slack =
+                depth.error + (limit + distance * plane.spread.length()) * TRIPLE_PRODUCT_ERROR;
+            let beyond = depth.value.abs() - limit;
+            if self.in_window && beyond.abs() > slack {
+                beyond < 0.0
+            } else {
+                self.count_exact();
+                exact::within_distance(
+                    triangle.map(|v| self.position(v)),
+                    self.position(x),
+                    distance,
+                )
+            }
+        })
+    }
+
+    pub(super) fn exact_turns(&self, p: u32, q: u32, x: [u32; 2]) -> [IBig; 2] {
+        let [p, q, x0, x1] = [p, q, x[0], x[1]].map(|v| self.position(v));
+        match self.viewpoint {
+            Viewpoint::Eye(eye) => exact::point_volumes(eye, p, q, [x0, x1]),
+            Viewpoint::Direction(forward) => exact::direction_volumes(forward, p, q, [x0, x1]),
+        }
+        .map(|volume| -volume)
+    }
+
+    pub(super) fn exact_depths(&self, triangle: [u32; 3], x: [u32; 2]) -> [IBig; 2] {
+        let [p, q, r] = triangle.map(|v| self.position(v));
+        exact::point_volumes(p, q, r, x.map(|v| self.position(v))).map(|volume| -volume)
+    }
+
+    pub(super) fn exact_near_distances(&self, x: [u32; 2]) -> [IBig; 2] {
+        match self.viewpoint {
+            Viewpoint::Eye(eye) => {
+                exact::near_distances(eye, self.forward, self.near, x.map(|v| self.position(v)))
+            }
+            Viewpoint::Direction(_) => [IBig::ONE, IBig::ONE],
+        }
+    }
+
+    pub(super) fn exact_near_cut_values(&self, triangle: [u32; 3], x: [u32; 2]) -> [IBig; 2] {
+        match self.viewpoint {
+            Viewpoint::Eye(eye) => exact::near_cut_values(
+                eye,
+                self.forward,
+                self.near,
+                triangle.map(|v| self.position(v)),
+                x.map(|v| self.position(v)),
+            ),
+            Viewpoint::Direction(_) => [IBig::ONE, IBig::ONE],
+        }
+    }
+}
+
+/// Makes an estimate agree with the sign that the exact path found.
+///
+/// Its bound stays, so that constructions know how little the value is worth.
+fn undecided(estimate: Estimate, sign: Sign) -> (Estimate, Sign) {
+    let size = estimate.value.abs().max(f64::MIN_POSITIVE);
+    let estimate = match sign {
+        Sign::Negative => Estimate { value: -size, ..estimate },
+        Sign::Zero => Estimate::ZERO,
+        Sign::Positive => Estimate { value: size, ..estimate },
+    };
+    (estimate, sign)
+}
