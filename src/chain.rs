@@ -130,9 +130,7 @@ fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -
                 spans.clear();
                 spans.extend_from_slice(visibility.spans(chunk * CHUNK + i));
                 if !options.exact && options.shortest > 0.0 {
-                    close_gaps(&mut spans, |t0, t1| {
-                        at(t0).distance(at(t1)) < options.shortest
-                    });
+                    close_gaps(&mut spans, |t0, t1| at(t0).distance(at(t1)) < options.shortest);
                 }
                 merge(&mut spans, options);
                 let kept = spans.iter().filter(|span| span.qi == 0 || options.hidden);
@@ -187,11 +185,7 @@ fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
 fn link(pieces: &[Piece], apart_by_kind: bool) -> Vec<u32> {
     let mut links = vec![FREE; 2 * pieces.len()];
     let class = |piece: &Piece| {
-        if apart_by_kind {
-            (piece.kind as u32, piece.qi)
-        } else {
-            (0, piece.qi.min(1))
-        }
+        if apart_by_kind { (piece.kind as u32, piece.qi) } else { (0, piece.qi.min(1)) }
     };
     // Ends by vertex, then class, then number: ends that may join are neighbours.
     let mut ends: Vec<(u32, (u32, u32), u32)> = (0..links.len() as u32)

@@ -38,9 +38,7 @@ impl LineSelection {
     /// Adds a kind.
     #[must_use]
     pub const fn with(self, kind: StrokeKind) -> Self {
-        Self {
-            kinds: self.kinds | 1 << kind as u32,
-        }
+        Self { kinds: self.kinds | 1 << kind as u32 }
     }
 
     /// Every edge of the mesh, but no line that is not one of its edges.
@@ -56,9 +54,7 @@ impl LineSelection {
     /// The kinds of both.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
-        Self {
-            kinds: self.kinds | other.kinds,
-        }
+        Self { kinds: self.kinds | other.kinds }
     }
 
     /// Whether a kind is drawn.
@@ -112,12 +108,7 @@ impl ImagePoint {
             Projection::Perspective { .. } => depth,
             Projection::Orthographic => 1.0,
         };
-        Self {
-            x: d.dot(frame.right),
-            y: d.dot(frame.upward),
-            w,
-            depth,
-        }
+        Self { x: d.dot(frame.right), y: d.dot(frame.upward), w, depth }
     }
 
     /// The image coordinates.
@@ -162,15 +153,9 @@ impl<'a> ViewedScene<'a> {
         let positions = scene.mesh().positions();
         let sight = Sight::new(positions, camera);
         let frame = camera.frame();
-        let image = positions
-            .par_iter()
-            .map(|&p| ImagePoint::new(p, camera, &frame))
-            .collect();
-        let triangle_turns = scene
-            .triangles()
-            .par_iter()
-            .map(|&[p, q, r]| sight.turn(p, q, r))
-            .collect();
+        let image = positions.par_iter().map(|&p| ImagePoint::new(p, camera, &frame)).collect();
+        let triangle_turns =
+            scene.triangles().par_iter().map(|&[p, q, r]| sight.turn(p, q, r)).collect();
         let n_faces = scene.mesh().n_faces() as u32;
         let facings = if scene.triangles().len() == n_faces as usize {
             Vec::new()
@@ -222,11 +207,7 @@ impl<'a> ViewedScene<'a> {
 
     /// Which way a face faces: positive front, negative back, zero edge-on.
     pub fn facing(&self, face: u32) -> Sign {
-        let facings = if self.facings.is_empty() {
-            &self.triangle_turns
-        } else {
-            &self.facings
-        };
+        let facings = if self.facings.is_empty() { &self.triangle_turns } else { &self.facings };
         facings[face as usize]
     }
 
@@ -237,9 +218,7 @@ impl<'a> ViewedScene<'a> {
 
     /// Whether an edge is among the drawn ones. O(log drawn).
     pub fn is_drawn(&self, edge: u32) -> bool {
-        self.drawn
-            .binary_search_by_key(&edge, |drawn| drawn.edge)
-            .is_ok()
+        self.drawn.binary_search_by_key(&edge, |drawn| drawn.edge).is_ok()
     }
 
     /// Whether any vertex is not strictly beyond the near plane.
@@ -268,11 +247,7 @@ impl<'a> ViewedScene<'a> {
         let chosen = |kind| (every || lines.contains(kind)).then_some(kind);
         let &[first, second] = topology.uses(edge) else {
             let is_boundary = topology.uses(edge).len() == 1;
-            let kind = if is_boundary {
-                StrokeKind::Boundary
-            } else {
-                StrokeKind::Nonmanifold
-            };
+            let kind = if is_boundary { StrokeKind::Boundary } else { StrokeKind::Nonmanifold };
             return chosen(kind);
         };
         let faces = [first, second].map(|corner| topology.corner_face(corner));
@@ -290,11 +265,7 @@ impl<'a> ViewedScene<'a> {
         if !every && !lines.contains(StrokeKind::Crease) {
             return None;
         }
-        if is_crease() {
-            chosen(StrokeKind::Crease)
-        } else {
-            chosen(StrokeKind::Mesh)
-        }
+        if is_crease() { chosen(StrokeKind::Crease) } else { chosen(StrokeKind::Mesh) }
     }
 
     fn normal(&self, face: u32) -> DVec3 {
@@ -309,9 +280,7 @@ struct Creases {
 
 impl Creases {
     fn new(crease_deg: f64) -> Self {
-        Self {
-            cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()),
-        }
+        Self { cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()) }
     }
 
     /// Whether faces with these normals meet at more than the crease angle.

@@ -21,7 +21,11 @@
 //! World: model units, right-handed, z up. Image: see [`view`]. Page: millimetres, see [`plot`].
 //! Angles are in radians unless a name ends in `_deg`.
 
+pub mod read;
+
 pub mod mesh;
+
+pub mod arrange;
 
 pub mod topology;
 
@@ -35,6 +39,8 @@ pub mod view;
 
 pub mod classify;
 
+pub mod framing;
+
 pub mod visibility;
 
 pub mod engines;
@@ -43,4 +49,12 @@ pub mod strokes;
 
 pub mod chain;
 
+pub mod draw;
+
 pub mod plot;
+
+pub mod page;
+
+pub mod writers;
+
+pub mod stats;

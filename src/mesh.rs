@@ -3,9 +3,12 @@
 //! A reader fills a [`PolygonSoup`] with whatever the file says. [`Mesh::new`] turns it into a
 //! [`Mesh`] in which equal positions are one vertex and every face has at least three corners.
 
+mod weld;
+
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 use thiserror::Error;
+
+use weld::{first_equal_position, first_near_position};
 
 /// Faces as a file lists them: positions may repeat, faces may be degenerate.
 ///
@@ -86,7 +89,7 @@ pub struct Repairs {
 }
 
 /// Why a [`PolygonSoup`] is no mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum MeshError {
     /// A coordinate is infinite or not a number.
     #[error("vertex {vertex} is not finite")]
@@ -103,6 +106,12 @@ pub enum MeshError {
         vertex: u32,
         /// How many positions there are.
         n_vertices: usize,
+    },
+    /// A distance to weld within that is negative, infinite or not a number.
+    #[error("the distance to weld within is {distance}; it must be a finite number, 0 or more")]
+    BadDistance {
+        /// The distance as given, in model units.
+        distance: f64,
     },
     /// More than 2³² − 1 vertices or corners.
     #[error("more than 4,294,967,294 vertices or face corners")]
@@ -128,21 +137,14 @@ impl Mesh {
         for (face, range) in soup.face_starts.windows(2).enumerate() {
             for &vertex in &soup.corners[range[0] as usize..range[1] as usize] {
                 if vertex as usize >= n_vertices {
-                    return Err(MeshError::MissingVertex {
-                        face,
-                        vertex,
-                        n_vertices,
-                    });
+                    return Err(MeshError::MissingVertex { face, vertex, n_vertices });
                 }
             }
         }
         let mut repairs = Repairs::default();
         let first_equal = first_equal_position(&soup.positions);
-        repairs.welded_vertices = first_equal
-            .iter()
-            .enumerate()
-            .filter(|&(i, &first)| i as u32 != first)
-            .count();
+        repairs.welded_vertices =
+            first_equal.iter().enumerate().filter(|&(i, &first)| i as u32 != first).count();
 
         let mut mesh = Self {
             positions: Vec::with_capacity(n_vertices - repairs.welded_vertices),
@@ -199,6 +201,33 @@ impl Mesh {
         Ok((mesh, repairs))
     }
 
+    /// Makes vertices that are closer than `distance` (model units) one, and says what changed.
+    ///
+    /// Chains count: two vertices become one when steps shorter than `distance` lead from one to
+    /// the other over vertices of the mesh. The first vertex of each group keeps its position, so a
+    /// distance longer than the edges of a mesh makes it vanish. Zero changes nothing.
+    /// Nearly O(v log v), also for vertices that crowd together.
+    ///
+    /// # Errors
+    /// A distance that is negative, infinite or not a number.
+    pub fn weld(self, distance: f64) -> Result<(Self, Repairs), MeshError> {
+        if !(distance.is_finite() && distance >= 0.0) {
+            return Err(MeshError::BadDistance { distance });
+        }
+        if distance == 0.0 {
+            return Ok((self, Repairs::default()));
+        }
+        let first_near = first_near_position(&self.positions, distance);
+        let positions = first_near.iter().map(|&first| self.positions[first as usize]).collect();
+        Self::new(PolygonSoup {
+            positions,
+            corners: self.corners,
+            face_starts: self.face_starts,
+            face_parts: self.face_parts,
+            parts: self.parts,
+        })
+    }
+
     /// Vertex positions in model units.
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
@@ -238,23 +267,6 @@ impl Mesh {
     /// Smallest box around all vertices as (lowest, highest) corner; `None` without vertices.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let (first, rest) = self.positions.split_first()?;
-        Some(rest.iter().fold((*first, *first), |(low, high), &p| {
-            (low.min(p), high.max(p))
-        }))
+        Some(rest.iter().fold((*first, *first), |(low, high), &p| (low.min(p), high.max(p))))
     }
-}
-
-/// For each position the index of the first one equal to it.
-fn first_equal_position(positions: &[DVec3]) -> Vec<u32> {
-    let mut first: FxHashMap<[u64; 3], u32> = FxHashMap::default();
-    first.reserve(positions.len());
-    positions
-        .iter()
-        .enumerate()
-        .map(|(i, &p)| {
-            *first
-                .entry((p + DVec3::ZERO).to_array().map(f64::to_bits))
-                .or_insert(i as u32)
-        })
-        .collect()
 }

@@ -76,6 +76,11 @@ impl Polylines {
         self.points.len()
     }
 
+    /// Sum of the lengths of all polylines in millimetres.
+    pub fn length_mm(&self) -> f64 {
+        self.iter().flat_map(|line| line.windows(2)).map(|s| s[0].distance(s[1])).sum()
+    }
+
     /// The polylines in order.
     pub fn iter(&self) -> impl Iterator<Item = &[DVec2]> {
         self.ends.iter().scan(0, |start, &end| {

@@ -18,12 +18,7 @@ impl Scene {
     pub fn new(mesh: Mesh) -> Self {
         let topology = Topology::new(&mesh);
         let (triangles, triangle_faces) = triangulate(&mesh);
-        Self {
-            mesh,
-            topology,
-            triangles,
-            triangle_faces,
-        }
+        Self { mesh, topology, triangles, triangle_faces }
     }
 
     /// The mesh.

@@ -71,9 +71,7 @@ impl Topology {
         for part in &parts {
             let before = topology.uses.len() as u32;
             topology.edges.extend_from_slice(&part.edges);
-            topology
-                .use_starts
-                .extend(part.use_ends.iter().map(|end| before + end));
+            topology.use_starts.extend(part.use_ends.iter().map(|end| before + end));
             topology.uses.extend_from_slice(&part.uses);
         }
         for edge in 0..topology.edges.len() {
@@ -100,10 +98,7 @@ impl Topology {
 
     /// The edge between two vertices, if there is one. O(log edges).
     pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
-        self.edges
-            .binary_search(&[a.min(b), a.max(b)])
-            .ok()
-            .map(|edge| edge as u32)
+        self.edges.binary_search(&[a.min(b), a.max(b)]).ok().map(|edge| edge as u32)
     }
 
     /// The uses of one edge, each named by its corner. Panics when there is no such edge.

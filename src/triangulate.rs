@@ -44,18 +44,17 @@ pub fn triangulate(mesh: &Mesh) -> (Vec<[u32; 3]>, Vec<u32>) {
         (triangles_left, faces_left) = (rest, face_rest);
         runs.push((first as u32..last as u32, triangle_run, face_run));
     }
-    runs.into_par_iter()
-        .for_each(|(range, triangle_run, face_run)| {
-            let mut clipper = EarClipper::default();
-            let mut at = 0;
-            for face in range {
-                let corners = mesh.face(face);
-                let n = corners.len() - 2;
-                clipper.clip(mesh.positions(), corners, &mut triangle_run[at..at + n]);
-                face_run[at..at + n].fill(face);
-                at += n;
-            }
-        });
+    runs.into_par_iter().for_each(|(range, triangle_run, face_run)| {
+        let mut clipper = EarClipper::default();
+        let mut at = 0;
+        for face in range {
+            let corners = mesh.face(face);
+            let n = corners.len() - 2;
+            clipper.clip(mesh.positions(), corners, &mut triangle_run[at..at + n]);
+            face_run[at..at + n].fill(face);
+            at += n;
+        }
+    });
     (triangles, faces)
 }
 
@@ -68,10 +67,7 @@ pub fn newell_normal(positions: &[DVec3], corners: &[u32]) -> DVec3 {
     // Relative to the first corner, so that a place far from the origin costs no digits.
     let base = positions[first as usize];
     for pair in rest.windows(2) {
-        let (a, b) = (
-            positions[pair[0] as usize] - base,
-            positions[pair[1] as usize] - base,
-        );
+        let (a, b) = (positions[pair[0] as usize] - base, positions[pair[1] as usize] - base);
         normal += a.cross(b);
     }
     normal
@@ -95,8 +91,7 @@ impl EarClipper {
         self.flatten(positions, corners);
         let n = corners.len();
         self.previous.clear();
-        self.previous
-            .extend((0..n as u32).map(|i| (i + n as u32 - 1) % n as u32));
+        self.previous.extend((0..n as u32).map(|i| (i + n as u32 - 1) % n as u32));
         self.next.clear();
         self.next.extend((0..n as u32).map(|i| (i + 1) % n as u32));
 
@@ -154,12 +149,8 @@ impl EarClipper {
     }
 
     fn triangle(&self, corner: u32) -> [DVec2; 3] {
-        [
-            self.previous[corner as usize],
-            corner,
-            self.next[corner as usize],
-        ]
-        .map(|i| self.points[i as usize])
+        [self.previous[corner as usize], corner, self.next[corner as usize]]
+            .map(|i| self.points[i as usize])
     }
 
     /// Whether the triangle at `corner` holds no other vertex, neither inside nor on its border.

@@ -38,17 +38,9 @@ const PARAMETER_ERROR: f64 = 1.0 / (1u64 << 42) as f64;
 
 impl Cut {
     /// The segment's first point.
-    pub const START: Self = Self {
-        t: 0.0,
-        error: 0.0,
-        plane: CutPlane::End,
-    };
+    pub const START: Self = Self { t: 0.0, error: 0.0, plane: CutPlane::End };
     /// The segment's last point.
-    pub const END: Self = Self {
-        t: 1.0,
-        error: 0.0,
-        plane: CutPlane::End,
-    };
+    pub const END: Self = Self { t: 1.0, error: 0.0, plane: CutPlane::End };
 }
 
 impl Sight<'_> {
@@ -64,19 +56,11 @@ impl Sight<'_> {
             + 4.0 * f64::EPSILON;
         let certain = difference.abs() > 2.0 * (a.error + b.error);
         if certain && error <= PARAMETER_ERROR {
-            return Cut {
-                t: (a.value / difference).clamp(0.0, 1.0),
-                error,
-                plane,
-            };
+            return Cut { t: (a.value / difference).clamp(0.0, 1.0), error, plane };
         }
         let [a, b] = self.exact_values(ends, plane);
         let t = exact::ratio(&a, &(&a - b)).clamp(0.0, 1.0);
-        Cut {
-            t,
-            error: 8.0 * f64::EPSILON,
-            plane,
-        }
+        Cut { t, error: 8.0 * f64::EPSILON, plane }
     }
 
     /// The order of two cuts along the segment, exactly. Two planes may cut at one point.
@@ -92,18 +76,10 @@ impl Sight<'_> {
         match (a.plane, b.plane) {
             // A plane cuts strictly between the ends: at an end there is no change of sign.
             (CutPlane::End, _) => {
-                return if a.t < 0.5 {
-                    Ordering::Less
-                } else {
-                    Ordering::Greater
-                };
+                return if a.t < 0.5 { Ordering::Less } else { Ordering::Greater };
             }
             (_, CutPlane::End) => {
-                return if b.t < 0.5 {
-                    Ordering::Greater
-                } else {
-                    Ordering::Less
-                };
+                return if b.t < 0.5 { Ordering::Greater } else { Ordering::Less };
             }
             _ => {}
         }

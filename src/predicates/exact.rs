@@ -27,23 +27,14 @@ impl OddScaled {
         let bits = x.to_bits();
         let biased = ((bits >> 52) & 0x7ff) as i32;
         let fraction = bits & ((1 << 52) - 1);
-        let (mantissa, exponent) = if biased == 0 {
-            (fraction, -1074)
-        } else {
-            (fraction | (1 << 52), biased - 1075)
-        };
+        let (mantissa, exponent) =
+            if biased == 0 { (fraction, -1074) } else { (fraction | (1 << 52), biased - 1075) };
         if mantissa == 0 {
-            return Self {
-                odd: 0,
-                exponent: 0,
-            };
+            return Self { odd: 0, exponent: 0 };
         }
         let zeros = mantissa.trailing_zeros();
         let odd = (mantissa >> zeros) as i64;
-        Self {
-            odd: if x < 0.0 { -odd } else { odd },
-            exponent: exponent + zeros as i32,
-        }
+        Self { odd: if x < 0.0 { -odd } else { odd }, exponent: exponent + zeros as i32 }
     }
 
     /// One more than the exponent of the highest bit.
@@ -73,10 +64,7 @@ impl Lattice {
     fn of(points: &[DVec3]) -> Self {
         let range = bit_range(points.iter().flat_map(|p| p.to_array()));
         let (low, high) = range.unwrap_or((0, 0));
-        Self {
-            exponent: low,
-            bits: high - low,
-        }
+        Self { exponent: low, bits: high - low }
     }
 
     fn is_small(&self) -> bool {
@@ -86,11 +74,7 @@ impl Lattice {
     fn small(&self, p: DVec3) -> [i128; 3] {
         p.to_array().map(|x| {
             let x = OddScaled::new(x);
-            if x.odd == 0 {
-                0
-            } else {
-                i128::from(x.odd) << (x.exponent - self.exponent)
-            }
+            if x.odd == 0 { 0 } else { i128::from(x.odd) << (x.exponent - self.exponent) }
         })
     }
 
@@ -195,18 +179,14 @@ pub fn facing(polygon: impl IntoIterator<Item = DVec3>, towards: Towards) -> Sig
 pub fn collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
     let lattice = Lattice::of(&[a, b, c]);
     let [a, b, c] = [a, b, c].map(|p| lattice.big(p));
-    cross(&minus(&b, &a), &minus(&c, &a))
-        .iter()
-        .all(|x| x.is_zero())
+    cross(&minus(&b, &a), &minus(&c, &a)).iter().all(|x| x.is_zero())
 }
 
 /// Whether `b − a` is parallel to `direction`.
 pub fn parallel(a: DVec3, b: DVec3, direction: DVec3) -> bool {
     let lattice = Lattice::of(&[a, b]);
     let [a, b] = [a, b].map(|p| lattice.big(p));
-    cross(&minus(&b, &a), &Lattice::of(&[direction]).big(direction))
-        .iter()
-        .all(|x| x.is_zero())
+    cross(&minus(&b, &a), &Lattice::of(&[direction]).big(direction)).iter().all(|x| x.is_zero())
 }
 
 /// A number `value · 2^exponent`: what is left when inputs of several scales meet in one
@@ -220,10 +200,7 @@ pub struct Dyadic {
 impl From<f64> for Dyadic {
     fn from(x: f64) -> Self {
         let x = OddScaled::new(x);
-        Self {
-            value: IBig::from(x.odd),
-            exponent: x.exponent,
-        }
+        Self { value: IBig::from(x.odd), exponent: x.exponent }
     }
 }
 
@@ -247,10 +224,7 @@ impl Add for Dyadic {
 
     fn add(self, other: Self) -> Self {
         let (a, b, exponent) = self.aligned(other);
-        Self {
-            value: a + b,
-            exponent,
-        }
+        Self { value: a + b, exponent }
     }
 }
 
@@ -259,10 +233,7 @@ impl Sub for Dyadic {
 
     fn sub(self, other: Self) -> Self {
         let (a, b, exponent) = self.aligned(other);
-        Self {
-            value: a - b,
-            exponent,
-        }
+        Self { value: a - b, exponent }
     }
 }
 
@@ -270,10 +241,7 @@ impl Mul for Dyadic {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        Self {
-            value: self.value * other.value,
-            exponent: self.exponent + other.exponent,
-        }
+        Self { value: self.value * other.value, exponent: self.exponent + other.exponent }
     }
 }
 

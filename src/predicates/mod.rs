@@ -114,10 +114,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Exactly zero.
-    pub const ZERO: Self = Self {
-        value: 0.0,
-        error: 0.0,
-    };
+    pub const ZERO: Self = Self { value: 0.0, error: 0.0 };
 
     /// The sign of the true value, when the bound decides it.
     #[inline]
@@ -138,10 +135,7 @@ impl std::ops::Neg for Estimate {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self {
-            value: -self.value,
-            error: self.error,
-        }
+        Self { value: -self.value, error: self.error }
     }
 }
 
@@ -169,11 +163,7 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Sign {
     let fits = |x: f64| x == 0.0 || ROBUST_WINDOW.contains(&x.abs());
     if [a, b, c].iter().all(|p| fits(p.x) && fits(p.y)) {
         let coordinates = |p: DVec2| robust::Coord { x: p.x, y: p.y };
-        return Sign::of(robust::orient2d(
-            coordinates(a),
-            coordinates(b),
-            coordinates(c),
-        ));
+        return Sign::of(robust::orient2d(coordinates(a), coordinates(b), coordinates(c)));
     }
     let [a, b, c] = [a, b, c].map(|p| p.extend(0.0));
     let [value, _] = exact::direction_volumes(DVec3::Z, a, b, [c, c]);

@@ -132,11 +132,7 @@ impl<'a> Sight<'a> {
     /// An estimate's sign, unless the numbers are outside the window in which its bound holds.
     #[inline]
     fn decided(&self, estimate: Estimate) -> Option<Sign> {
-        if self.in_window {
-            estimate.sign()
-        } else {
-            None
-        }
+        if self.in_window { estimate.sign() } else { None }
     }
 
     /// The plane of sight through two vertices: its value at `x` is `turn(p, q, x)`.
@@ -244,11 +240,7 @@ impl<'a> Sight<'a> {
             Viewpoint::Eye(_) => PlaneThrough::new(p, q, DVec3::ZERO),
             Viewpoint::Direction(forward) => PlaneThrough::new(forward, q - p, DVec3::ZERO),
         };
-        let differs = plane
-            .normal
-            .abs()
-            .cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread)
-            .any();
+        let differs = plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any();
         if self.in_window && differs {
             return false;
         }
@@ -272,13 +264,7 @@ impl<'a> Sight<'a> {
     #[inline]
     pub fn near_distance(&self, x: u32) -> (Estimate, Sign) {
         if !self.has_near_plane() {
-            return (
-                Estimate {
-                    value: 1.0,
-                    error: 0.0,
-                },
-                Sign::Positive,
-            );
+            return (Estimate { value: 1.0, error: 0.0 }, Sign::Positive);
         }
         let d = self.relative(x);
         let limit = self.near * self.forward.length_squared();
@@ -301,8 +287,7 @@ impl<'a> Sight<'a> {
     /// Multiplied by the opposite of the triangle's turn, it is positive on the kept side.
     pub fn near_cut(&self, triangle: [u32; 3], ends: [u32; 2]) -> [Sign; 2] {
         self.count_exact();
-        self.exact_near_cut_values(triangle, ends)
-            .map(|value| exact::sign(&value))
+        self.exact_near_cut_values(triangle, ends).map(|value| exact::sign(&value))
     }
 
     /// Whether both ends of a segment lie within `distance` of a triangle's plane.
@@ -373,15 +358,9 @@ impl<'a> Sight<'a> {
 fn undecided(estimate: Estimate, sign: Sign) -> (Estimate, Sign) {
     let size = estimate.value.abs().max(f64::MIN_POSITIVE);
     let estimate = match sign {
-        Sign::Negative => Estimate {
-            value: -size,
-            ..estimate
-        },
+        Sign::Negative => Estimate { value: -size, ..estimate },
         Sign::Zero => Estimate::ZERO,
-        Sign::Positive => Estimate {
-            value: size,
-            ..estimate
-        },
+        Sign::Positive => Estimate { value: size, ..estimate },
     };
     (estimate, sign)
 }

@@ -68,16 +68,12 @@ impl Rounding {
             .map(|&p| (p - eye).abs().element_sum() + p.abs().element_sum())
             .reduce(|| 0.0, f64::max);
         let flat_error = (!view.sight().has_near_plane()).then_some(IMAGE_ERROR * largest);
-        Self {
-            flat_error,
-            depth_error: DEPTH_ERROR * largest,
-        }
+        Self { flat_error, depth_error: DEPTH_ERROR * largest }
     }
 
     /// How far an image coordinate up to `size` in absolute value may be off.
     fn image_error(&self, size: f64) -> f64 {
-        self.flat_error
-            .unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
+        self.flat_error.unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
     }
 
     fn bounds<const N: usize>(&self, points: [DVec2; N], depths: [f64; N]) -> Bounds {
@@ -132,9 +128,7 @@ impl ImageIndex {
         let n_triangles = view.scene().triangles().len();
         let n_segments = segments.clone().count();
         let (origin, levels) = levels(&rounding, segments.clone(), n_triangles);
-        let n_cells = levels
-            .last()
-            .map_or(0, |level| level.first + level.columns * level.rows);
+        let n_cells = levels.last().map_or(0, |level| level.first + level.columns * level.rows);
         let mut index = Self {
             rounding,
             origin,
@@ -254,13 +248,10 @@ impl ImageIndex {
     fn triangle_bounds(&self, view: &ViewedScene, corners: [u32; 3]) -> Option<Bounds> {
         let points = corners.map(|corner| view.image()[corner as usize]);
         if view.near_plane_cuts()
-            && corners
-                .iter()
-                .any(|&c| view.sight().near_distance(c).1 == Sign::Negative)
+            && corners.iter().any(|&c| view.sight().near_distance(c).1 == Sign::Negative)
         {
-            let all_behind = corners
-                .iter()
-                .all(|&c| view.sight().near_distance(c).1 == Sign::Negative);
+            let all_behind =
+                corners.iter().all(|&c| view.sight().near_distance(c).1 == Sign::Negative);
             // Nothing of it is left: an empty box.
             return all_behind.then_some(Bounds {
                 low: DVec2::INFINITY,
@@ -269,10 +260,7 @@ impl ImageIndex {
                 farthest: f64::NEG_INFINITY,
             });
         }
-        Some(
-            self.rounding
-                .bounds(points.map(ImagePoint::image), points.map(|p| p.depth)),
-        )
+        Some(self.rounding.bounds(points.map(ImagePoint::image), points.map(|p| p.depth)))
     }
 
     /// The finest level whose cells are at least as large as the box; `None` for an empty box or
@@ -327,18 +315,14 @@ impl ImageIndex {
         bounds: &Bounds,
         mut f: impl FnMut(u32) -> bool,
     ) -> bool {
-        let (first_row, last_row) = (
-            self.row(level, bounds.low.y),
-            self.row(level, bounds.high.y),
-        );
+        let (first_row, last_row) = (self.row(level, bounds.low.y), self.row(level, bounds.high.y));
         if first_row == last_row {
             let first = level.first + first_row * level.columns;
             let columns = self.column(level, bounds.low.x)..=self.column(level, bounds.high.x);
             return columns.into_iter().any(|column| f(first + column));
         }
-        let margin = self
-            .rounding
-            .image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
+        let margin =
+            self.rounding.image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
         let [a, b] = segment.image;
         let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
         let is_level = a.y == b.y;
@@ -356,16 +340,8 @@ impl ImageIndex {
             let low = self.origin.y + f64::from(row) * level.cell - margin;
             let high = self.origin.y + f64::from(row + 1) * level.cell + margin;
             // The outermost rows reach as far as there is anything.
-            let from = if row == first_row || is_level {
-                a.x
-            } else {
-                at(low)
-            };
-            let to = if row == last_row || is_level {
-                b.x
-            } else {
-                at(high)
-            };
+            let from = if row == first_row || is_level { a.x } else { at(low) };
+            let to = if row == last_row || is_level { b.x } else { at(high) };
             let (left, right) = (from.min(to) - margin, from.max(to) + margin);
             let first = level.first + row * level.columns;
             for column in self.column(level, left)..=self.column(level, right) {
@@ -452,13 +428,9 @@ impl ImageIndex {
         let depth = bounds.farthest + contact_tolerance / sine;
         let level = &self.levels[own - 2];
         let points = corners.map(|corner| view.image()[corner as usize].image());
-        let margin = self
-            .rounding
-            .image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
-        let (first_row, last_row) = (
-            self.row(level, bounds.low.y),
-            self.row(level, bounds.high.y),
-        );
+        let margin =
+            self.rounding.image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
+        let (first_row, last_row) = (self.row(level, bounds.low.y), self.row(level, bounds.high.y));
         for row in first_row..=last_row {
             let low = self.origin.y + f64::from(row) * level.cell - margin;
             let high = low + level.cell + 2.0 * margin;
@@ -493,10 +465,7 @@ fn sine_of_sight(view: &ViewedScene, corners: [u32; 3]) -> Option<f64> {
     let normal = (q - p).cross(r - p).normalize_or_zero();
     let sine = if view.sight().has_near_plane() {
         let eye = view.camera().eye();
-        let farthest = [p, q, r]
-            .iter()
-            .map(|&v| (v - eye).length())
-            .fold(0.0, f64::max);
+        let farthest = [p, q, r].iter().map(|&v| (v - eye).length()).fold(0.0, f64::max);
         normal.dot(p - eye).abs() / farthest
     } else {
         normal.dot(view.camera().frame().forward).abs()
@@ -557,20 +526,12 @@ fn levels<'s>(
     if !(size.is_finite() && size.max_element() > 0.0) {
         return (
             DVec2::ZERO,
-            vec![Level {
-                cell: 1.0,
-                columns: 1,
-                rows: 1,
-                first: 0,
-                used: false,
-            }],
+            vec![Level { cell: 1.0, columns: 1, rows: 1, first: 0, used: false }],
         );
     }
     let n_cells = (n_triangles as f64).clamp(FINEST_CELLS.0, FINEST_CELLS.1);
     // A flat image gets cells as long as its longer side asks for.
-    let cell = (size.x * size.y / n_cells)
-        .sqrt()
-        .max(size.max_element() / n_cells);
+    let cell = (size.x * size.y / n_cells).sqrt().max(size.max_element() / n_cells);
     let mut level = Level {
         cell,
         columns: (size.x / cell) as u32 + 1,
@@ -603,10 +564,7 @@ pub(super) struct Visitor {
 impl Visitor {
     /// Work space for queries of `index`.
     pub(super) fn new(index: Option<&ImageIndex>) -> Self {
-        Self {
-            seen: vec![0; index.map_or(0, |index| index.n_triangles)],
-            segment: 0,
-        }
+        Self { seen: vec![0; index.map_or(0, |index| index.n_triangles)], segment: 0 }
     }
 
     /// Whether `test` holds for any triangle that may cover some of `segment`.
@@ -630,27 +588,22 @@ impl Visitor {
         let bounds = index.rounding.bounds(segment.image, segment.depth);
         let separation = Separation::new(index, segment, &bounds);
         let (seen, number) = (&mut self.seen, self.segment);
-        index
-            .levels
-            .iter()
-            .rev()
-            .filter(|level| level.used)
-            .any(|level| {
-                index.any_cell(level, segment, &bounds, |cell| {
-                    let cell = cell as usize;
-                    let range = index.starts[cell] as usize..index.starts[cell + 1] as usize;
-                    index.entries[range].iter().any(|&triangle| {
-                        let last = &mut seen[triangle as usize];
-                        if *last == number {
-                            return false;
-                        }
-                        *last = number;
-                        let corners = view.scene().triangles()[triangle as usize];
-                        let points = corners.map(|corner| view.image()[corner as usize]);
-                        !separation.apart(points) && test(triangle)
-                    })
+        index.levels.iter().rev().filter(|level| level.used).any(|level| {
+            index.any_cell(level, segment, &bounds, |cell| {
+                let cell = cell as usize;
+                let range = index.starts[cell] as usize..index.starts[cell + 1] as usize;
+                index.entries[range].iter().any(|&triangle| {
+                    let last = &mut seen[triangle as usize];
+                    if *last == number {
+                        return false;
+                    }
+                    *last = number;
+                    let corners = view.scene().triangles()[triangle as usize];
+                    let points = corners.map(|corner| view.image()[corner as usize]);
+                    !separation.apart(points) && test(triangle)
                 })
             })
+        })
     }
 }
 
@@ -691,9 +644,7 @@ impl<'i> Separation<'i> {
         }
         // Each factor of the area is off by two errors at most.
         let offsets = points.map(|p| p - self.start);
-        let reach = offsets
-            .iter()
-            .fold(self.along.abs(), |reach, d| reach.max(d.abs()));
+        let reach = offsets.iter().fold(self.along.abs(), |reach, d| reach.max(d.abs()));
         let slack = 8.0 * error * (reach.element_sum() + error);
         let sides = offsets.map(|offset| self.along.perp_dot(offset));
         sides.iter().all(|&side| side > slack) || sides.iter().all(|&side| side < -slack)

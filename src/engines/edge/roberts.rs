@@ -50,10 +50,7 @@ pub fn solve_all_pairs(view: &ViewedScene, settings: &Settings) -> (Visibility, 
 }
 
 fn segments(view: &ViewedScene) -> Vec<Option<Segment>> {
-    view.drawn()
-        .par_iter()
-        .map(|drawn| Segment::new(view, drawn.edge))
-        .collect()
+    view.drawn().par_iter().map(|drawn| Segment::new(view, drawn.edge)).collect()
 }
 
 fn run(
@@ -101,10 +98,7 @@ struct Clipper {
 
 impl Clipper {
     fn new(index: Option<&ImageIndex>) -> Self {
-        Self {
-            sweep: Sweep::default(),
-            visitor: Visitor::new(index),
-        }
+        Self { sweep: Sweep::default(), visitor: Visitor::new(index) }
     }
 
     fn clip(
@@ -128,12 +122,7 @@ impl Clipper {
             None => (0..view.scene().triangles().len() as u32).any(test),
         };
         if wholly_hidden {
-            let span = Span {
-                t0: segment.from.t,
-                t1: segment.to.t,
-                qi: 1,
-                doubled: false,
-            };
+            let span = Span { t0: segment.from.t, t1: segment.to.t, qi: 1, doubled: false };
             return sweep.only(span);
         }
         sweep.spans(view.sight(), segment, settings.count_layers)
@@ -149,18 +138,13 @@ fn clip_by(
     triangle: u32,
     sweep: &mut Sweep,
 ) -> bool {
-    let (cover, border) = match shadow(
-        view,
-        segment,
-        triangle,
-        settings.contact_tolerance,
-        settings.find_doubled,
-    ) {
-        None => return false,
-        Some(Shadow::Covers(cover)) => (Some(cover), None),
-        Some(Shadow::AlongBorder(cover, border)) => (Some(cover), Some((cover, border, false))),
-        Some(Shadow::OnBorder(cover, border)) => (None, Some((cover, border, true))),
-    };
+    let (cover, border) =
+        match shadow(view, segment, triangle, settings.contact_tolerance, settings.find_doubled) {
+            None => return false,
+            Some(Shadow::Covers(cover)) => (Some(cover), None),
+            Some(Shadow::AlongBorder(cover, border)) => (Some(cover), Some((cover, border, false))),
+            Some(Shadow::OnBorder(cover, border)) => (None, Some((cover, border, true))),
+        };
     if let Some((cover, [p, q], same_depth)) = border
         && let Some(other) = view.scene().topology().find_edge(p, q)
         && other != segment.edge

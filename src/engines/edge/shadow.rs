@@ -122,10 +122,7 @@ pub(super) fn shadow(
     };
 
     let sight = view.sight();
-    let mut range = Range {
-        from: segment.from,
-        to: segment.to,
-    };
+    let mut range = Range { from: segment.from, to: segment.to };
     let mut along: Option<usize> = None;
     for side in 0..3 {
         let (p, q) = (corners[side], corners[(side + 1) % 3]);
@@ -159,17 +156,12 @@ pub(super) fn shadow(
 
     let mut along_near_cut = false;
     if near_signs.contains(&Sign::Negative) {
-        let signs = sight
-            .near_cut(corners, ends)
-            .map(|sign| sign.times(turn.flipped()));
+        let signs = sight.near_cut(corners, ends).map(|sign| sign.times(turn.flipped()));
         if signs == [Sign::Zero; 2] {
             along_near_cut = true;
         } else {
             // The exact path was needed for the signs, so there are no estimates to start from.
-            let unknown = Estimate {
-                value: 0.0,
-                error: f64::INFINITY,
-            };
+            let unknown = Estimate { value: 0.0, error: f64::INFINITY };
             let cut = || sight.cut(ends, CutPlane::NearCut(corners), [unknown; 2]);
             if !range.keep(view, ends, signs, cut) {
                 return None;
@@ -185,11 +177,7 @@ pub(super) fn shadow(
         }
         None => Sides::Both,
     };
-    let cover = Cover {
-        from: range.from,
-        to: range.to,
-        sides,
-    };
+    let cover = Cover { from: range.from, to: range.to, sides };
     let border = along.map(|side| [corners[side], corners[(side + 1) % 3]]);
     if in_plane {
         return border.map(|border| Shadow::OnBorder(cover, border));

@@ -43,14 +43,8 @@ impl Sweep {
     }
 
     fn add(&mut self, cover: &Cover, change: [i32; 3]) {
-        self.events.push(Event {
-            at: cover.from,
-            change,
-        });
-        self.events.push(Event {
-            at: cover.to,
-            change: change.map(|x| -x),
-        });
+        self.events.push(Event { at: cover.from, change });
+        self.events.push(Event { at: cover.to, change: change.map(|x| -x) });
     }
 
     /// The same span and no other, for a segment of which nothing more need be known.
@@ -71,8 +65,7 @@ impl Sweep {
     ) -> &[Span] {
         let ends = segment.ends;
         // Equal cuts may come in any order: their changes are added before a span begins.
-        self.events
-            .sort_unstable_by(|a, b| sight.cut_order(ends, &a.at, &b.at));
+        self.events.sort_unstable_by(|a, b| sight.cut_order(ends, &a.at, &b.at));
         self.spans.clear();
         let mut counts = [0i32; 3];
         let mut start = segment.from;
@@ -103,11 +96,6 @@ fn push(spans: &mut Vec<Span>, from: &Cut, to: &Cut, counts: [i32; 3], count_lay
     let t1 = to.t.max(t0);
     match spans.last_mut() {
         Some(last) if last.qi == qi && last.doubled == doubled => last.t1 = t1,
-        _ => spans.push(Span {
-            t0,
-            t1,
-            qi,
-            doubled,
-        }),
+        _ => spans.push(Span { t0, t1, qi, doubled }),
     }
 }

@@ -1,0 +1,483 @@
+//! What can be typed after `hiddenline draw`, and what it means.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use hiddenline::arrange::{Arrangement, UpAxis};
+use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
+use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
+use hiddenline::engines::edge::Engine;
+use hiddenline::framing::{
+    DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, NamedView, ProjectionKind, Standpoint,
+};
+use hiddenline::page::{
+    DEFAULT_MARGIN_MM, DEFAULT_PEN_WIDTH_MM, Dash, Orientation, PageOptions, Paper, Placement,
+};
+use hiddenline::read::ModelFormat;
+use hiddenline::view::{DEFAULT_FOV_DEG, DEFAULT_NEAR};
+use hiddenline::writers::Format;
+use hiddenline::writers::png::Resolution;
+use hiddenline::writers::svg::StrokeElement;
+
+use super::values;
+
+const EXAMPLES: &str = "\
+Examples:
+  hiddenline draw bunny.stl -o bunny.svg
+      A three-quarter view, fitted to a sheet of A4.
+  hiddenline draw part.stl --view isometric --hidden dashed --page a3 -o part.svg
+      An isometric drawing with hidden lines dashed on a layer of their own.
+  hiddenline draw house.obj --up-axis y --eye=-30,-40,12 --fov 50 -o house.png
+      A picture of what is seen from a point. Numbers may be negative.
+  hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
+      True to scale, for a model in millimetres.
+  cat part.stl | hiddenline draw - --input-format stl > part.svg
+      From standard input to standard output.";
+
+/// Draw models as lines, the hidden ones removed
+///
+/// Reads OBJ, STL (text or binary), PLY and OFF, and writes SVG for print and pen plotters, PNG, or
+/// the strokes as JSON. Several models are drawn together as one scene. The drawing is exact: what
+/// hides what is decided without rounding and without tolerances.
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct DrawArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    lines: LineArgs,
+    #[command(flatten)]
+    page: PageArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Model")]
+struct ModelArgs {
+    /// Files to draw: .obj, .stl, .ply, .off; `-` is standard input
+    #[arg(value_name = "MODEL", required = true)]
+    models: Vec<PathBuf>,
+    /// Format of the models, whatever they are named
+    ///
+    /// Without it the name's extension decides, and where that says nothing, the content.
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    input_format: Option<InputFormat>,
+    /// Axis that points up in the models
+    #[arg(long, value_name = "AXIS", value_enum, default_value = "z")]
+    up_axis: Axis,
+    /// Factor for all coordinates
+    #[arg(long, value_name = "FACTOR", value_parser = values::positive, default_value_t = 1.0)]
+    scale: f64,
+    /// Turn the models by angles in degrees around x, then y, then z
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    rotate: Option<DVec3>,
+    /// Make one vertex of those closer together than this, in model units
+    #[arg(long, value_name = "D", value_parser = values::not_negative, default_value_t = 0.0)]
+    weld: f64,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Camera")]
+struct CameraArgs {
+    /// Where the observer stands
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    eye: Option<DVec3>,
+    /// The point looked at [default: the middle of the bounding box]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    target: Option<DVec3>,
+    /// What is up on the page [default: 0,0,1, or 0,1,0 when looking along z]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    up: Option<DVec3>,
+    /// Degrees around the vertical: 0 from the front, 90 from the right [default: 30]
+    #[arg(long, value_name = "DEG", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["eye", "view"])]
+    azimuth: Option<f64>,
+    /// Degrees above the horizontal [default: 25]
+    #[arg(long, value_name = "DEG", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["eye", "view"])]
+    elevation: Option<f64>,
+    /// Distance from target to eye [default: the whole scene in view]
+    #[arg(long, value_name = "D", value_parser = values::positive, conflicts_with = "eye")]
+    distance: Option<f64>,
+    /// A view with a name, orthographic unless --projection says otherwise
+    #[arg(long, value_enum, conflicts_with = "eye")]
+    view: Option<View>,
+    /// How rays of sight run [default: perspective, but orthographic with --view]
+    #[arg(long, value_enum)]
+    projection: Option<ProjectionName>,
+    /// Vertical field of view in degrees
+    ///
+    /// It says how far away an automatic camera stands and what --fit-fov shows, nothing else.
+    #[arg(long, value_name = "DEG", value_parser = values::field_of_view)]
+    #[arg(default_value_t = DEFAULT_FOV_DEG)]
+    fov: f64,
+    /// Place of the near plane, as a part of the way from eye to target
+    #[arg(long, value_name = "PART", value_parser = values::positive)]
+    #[arg(default_value_t = DEFAULT_NEAR)]
+    near: f64,
+    /// Take the camera of a strokes file (--format json)
+    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with_all = ["eye", "target", "up", "azimuth", "elevation", "distance", "view",
+        "projection", "fov", "near"])]
+    camera: Option<PathBuf>,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Lines")]
+struct LineArgs {
+    /// Kinds of line to draw, with commas between them
+    ///
+    /// silhouette: between a front and a back face; crease: where faces meet at more than --crease;
+    /// boundary: on one face only; nonmanifold: on three faces or more; intersection: where faces
+    /// pierce each other; mesh, all: every edge of the mesh. An edge to which several kinds apply
+    /// is drawn when any of them is named.
+    #[arg(long, value_name = "KINDS", value_parser = values::lines, verbatim_doc_comment)]
+    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
+    lines: LineSelection,
+    /// Faces that meet at more than this angle make a crease
+    #[arg(long, value_name = "DEG", value_parser = values::crease)]
+    #[arg(default_value_t = DEFAULT_CREASE_DEG)]
+    crease: f64,
+    /// What becomes of hidden lines; if drawn, they are on their own layer
+    #[arg(long, value_enum, default_value = "none")]
+    hidden: Hidden,
+    /// Lengths of dashes and gaps of hidden lines
+    #[arg(long, value_name = "DASH,GAP", value_parser = values::dash, default_value = "2.5,1.25")]
+    dash: Dash,
+    /// How hidden lines are found; all engines give the same drawing
+    #[arg(long, value_enum, default_value = "auto")]
+    engine: EngineName,
+    /// Faces do not hide lines that lie this close to their plane, in model units
+    ///
+    /// Meant for parts that touch, but not exactly. The default is about what single precision
+    /// makes of the largest coordinate; 0 turns it off.
+    #[arg(long, value_name = "D", value_parser = values::not_negative)]
+    contact_tolerance: Option<f64>,
+    /// Visible strokes shorter than this on paper are dropped, such gaps in a line are closed
+    #[arg(long, value_name = "MM", value_parser = values::not_negative)]
+    #[arg(default_value_t = DEFAULT_SHORTEST_STROKE_MM)]
+    shortest_stroke: f64,
+    /// Draw what is exactly visible: one stroke for each visible interval of each edge
+    ///
+    /// Nothing is joined, dropped, dashed or drawn once for two: for comparisons, not for pens.
+    #[arg(long, conflicts_with = "contact_tolerance")]
+    exact: bool,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Page")]
+struct PageArgs {
+    /// a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
+    ///
+    /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
+    #[arg(long, value_name = "SIZE", default_value = "a4")]
+    page: Paper,
+    /// Wide rather than high
+    #[arg(long, conflicts_with = "portrait")]
+    landscape: bool,
+    /// High rather than wide
+    #[arg(long)]
+    portrait: bool,
+    /// Empty border; nothing is drawn outside
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    #[arg(default_value_t = DEFAULT_MARGIN_MM)]
+    margin: f64,
+    /// Scale, as in 1:10, instead of fitting the drawing to the page
+    ///
+    /// In perspective it holds at the distance of the target.
+    #[arg(long, value_name = "1:N", value_parser = values::scale, conflicts_with = "fit_fov")]
+    drawing_scale: Option<f64>,
+    /// What a model unit is, for --drawing-scale
+    #[arg(long, value_enum, default_value = "mm")]
+    unit: LengthUnit,
+    /// Show exactly the field of view between the upper and the lower margin
+    #[arg(long)]
+    fit_fov: bool,
+    /// Width of the pen's line
+    #[arg(long, value_name = "MM", value_parser = values::positive_length)]
+    #[arg(default_value_t = DEFAULT_PEN_WIDTH_MM)]
+    pen_width: f64,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Output")]
+struct OutputArgs {
+    /// File to write, its format given by the extension; `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Format of the output [default: by extension; svg on standard output]
+    #[arg(long, value_enum)]
+    format: Option<FormatName>,
+    /// Element that a stroke is written as in SVG
+    #[arg(long, value_name = "ELEMENT", value_enum, default_value = "path")]
+    svg_element: SvgElement,
+    /// Pixels per inch of a PNG [default: 150]
+    #[arg(long, value_parser = values::positive, conflicts_with = "png_width")]
+    dpi: Option<f64>,
+    /// Pixels from left to right of a PNG
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..))]
+    png_width: Option<u32>,
+    /// Threads to work with [default: all]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print counts and times as JSON, the last line on standard error
+    #[arg(long)]
+    stats: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum InputFormat {
+    Obj,
+    Stl,
+    Ply,
+    Off,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Axis {
+    Y,
+    Z,
+}
+
+#[derive(Clone, Copy)]
+struct View(NamedView);
+
+impl ValueEnum for View {
+    fn value_variants<'a>() -> &'a [Self] {
+        const VIEWS: [View; 9] = {
+            let mut views = [View(NamedView::Front); 9];
+            let mut i = 0;
+            while i < views.len() {
+                views[i] = View(NamedView::ALL[i]);
+                i += 1;
+            }
+            views
+        };
+        &VIEWS
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(clap::builder::PossibleValue::new(self.0.name()))
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ProjectionName {
+    Perspective,
+    Orthographic,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Hidden {
+    None,
+    Dashed,
+    Solid,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EngineName {
+    Auto,
+    Roberts,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LengthUnit {
+    Mm,
+    Cm,
+    M,
+    In,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatName {
+    Svg,
+    Json,
+    Png,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SvgElement {
+    Path,
+    Polyline,
+}
+
+/// What is to be done, with nothing left to check but what depends on the files.
+pub(super) struct Job {
+    pub(super) models: Vec<PathBuf>,
+    pub(super) input_format: Option<ModelFormat>,
+    pub(super) arrangement: Arrangement,
+    pub(super) view: ViewSource,
+    pub(super) draw: DrawOptions,
+    pub(super) page: PageOptions,
+    pub(super) pen_width_mm: f64,
+    pub(super) dash: Dash,
+    /// `None` is standard output.
+    pub(super) output: Option<PathBuf>,
+    pub(super) format: Format,
+    pub(super) svg_element: StrokeElement,
+    pub(super) resolution: Resolution,
+    pub(super) threads: Option<usize>,
+    pub(super) stats: bool,
+    pub(super) quiet: bool,
+}
+
+/// Where the camera comes from.
+pub(super) enum ViewSource {
+    /// A strokes file.
+    File(PathBuf),
+    /// Options.
+    Framing(Framing),
+}
+
+impl DrawArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn job(self) -> Result<Job, String> {
+        let Self { model, camera, lines, page, output } = self;
+        if model.models.iter().filter(|path| is_dash(path)).count() > 1 {
+            return Err("standard input (-) can be read only once".into());
+        }
+        let path = output.output.filter(|path| !is_dash(path));
+        let format = output_format(output.format, path.as_deref())?;
+        Ok(Job {
+            input_format: model.input_format.map(InputFormat::format),
+            arrangement: Arrangement {
+                up_axis: match model.up_axis {
+                    Axis::Y => UpAxis::Y,
+                    Axis::Z => UpAxis::Z,
+                },
+                scale: model.scale,
+                rotate_deg: model.rotate.unwrap_or(DVec3::ZERO),
+                weld_distance: model.weld,
+            },
+            models: model.models,
+            view: camera.view_source(),
+            page: page.options(),
+            pen_width_mm: page.pen_width,
+            dash: lines.dash,
+            draw: DrawOptions { apart_by_kind: format == Format::Json, ..lines.options() },
+            output: path,
+            format,
+            svg_element: match output.svg_element {
+                SvgElement::Path => StrokeElement::Path,
+                SvgElement::Polyline => StrokeElement::Polyline,
+            },
+            resolution: match (output.dpi, output.png_width) {
+                (_, Some(width)) => Resolution::WidthPx(width),
+                (Some(dpi), None) => Resolution::Dpi(dpi),
+                (None, None) => Resolution::default(),
+            },
+            threads: output.threads.map(usize::from),
+            stats: output.stats,
+            quiet: output.quiet,
+        })
+    }
+}
+
+fn is_dash(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Format, String> {
+    match (typed, path) {
+        (Some(FormatName::Svg), _) | (None, None) => Ok(Format::Svg),
+        (Some(FormatName::Json), _) => Ok(Format::Json),
+        (Some(FormatName::Png), _) => Ok(Format::Png),
+        (None, Some(path)) => Format::from_path(path).ok_or_else(|| {
+            let known = Format::ALL.map(|format| format!(".{}", format.name())).join(", ");
+            format!("`{}` has none of the extensions {known}; give --format", path.display())
+        }),
+    }
+}
+
+impl CameraArgs {
+    fn view_source(self) -> ViewSource {
+        if let Some(path) = self.camera {
+            return ViewSource::File(path);
+        }
+        let standpoint = match (self.eye, self.view) {
+            (Some(eye), _) => Standpoint::Eye(eye),
+            (None, Some(View(view))) => Standpoint::Named { view, distance: self.distance },
+            (None, None) => Standpoint::Angles {
+                azimuth_deg: self.azimuth.unwrap_or(DEFAULT_AZIMUTH_DEG),
+                elevation_deg: self.elevation.unwrap_or(DEFAULT_ELEVATION_DEG),
+                distance: self.distance,
+            },
+        };
+        ViewSource::Framing(Framing {
+            standpoint,
+            target: self.target,
+            up: self.up,
+            projection: self.projection.map(|name| match name {
+                ProjectionName::Perspective => ProjectionKind::Perspective,
+                ProjectionName::Orthographic => ProjectionKind::Orthographic,
+            }),
+            fov_deg: self.fov,
+            near: self.near,
+        })
+    }
+}
+
+impl LineArgs {
+    fn options(&self) -> DrawOptions {
+        DrawOptions {
+            lines: self.lines,
+            crease_deg: self.crease,
+            hidden: match (self.hidden, self.exact) {
+                (Hidden::None, _) => HiddenLines::None,
+                (Hidden::Dashed, false) => HiddenLines::Dashed,
+                (Hidden::Solid, _) | (Hidden::Dashed, true) => HiddenLines::Solid,
+            },
+            exact: self.exact,
+            engine: match self.engine {
+                EngineName::Auto => Engine::Auto,
+                EngineName::Roberts => Engine::Roberts,
+            },
+            contact_tolerance: self.contact_tolerance,
+            shortest_stroke_mm: self.shortest_stroke,
+            apart_by_kind: false,
+        }
+    }
+}
+
+impl PageArgs {
+    fn options(&self) -> PageOptions {
+        let unit_mm = match self.unit {
+            LengthUnit::Mm => 1.0,
+            LengthUnit::Cm => 10.0,
+            LengthUnit::M => 1000.0,
+            LengthUnit::In => 25.4,
+        };
+        PageOptions {
+            paper: self.page,
+            orientation: match (self.landscape, self.portrait) {
+                (true, _) => Some(Orientation::Landscape),
+                (_, true) => Some(Orientation::Portrait),
+                _ => None,
+            },
+            margin_mm: self.margin,
+            placement: match (self.drawing_scale, self.fit_fov) {
+                (Some(scale), _) => Placement::Scale { mm_per_unit: scale * unit_mm },
+                (None, true) => Placement::FieldOfView,
+                (None, false) => Placement::Fit,
+            },
+        }
+    }
+}
+
+impl InputFormat {
+    fn format(self) -> ModelFormat {
+        match self {
+            Self::Obj => ModelFormat::Obj,
+            Self::Stl => ModelFormat::Stl,
+            Self::Ply => ModelFormat::Ply,
+            Self::Off => ModelFormat::Off,
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Messages on standard error, colored where it is a terminal and NO_COLOR is not set.
+
+use std::fmt::Display;
+use std::io::Write;
+
+use clap::builder::styling::{AnsiColor, Style};
+
+pub(super) fn error(message: &str) {
+    labeled(AnsiColor::Red.on_default().bold(), "error", message);
+}
+
+pub(super) fn warning(message: &str) {
+    labeled(AnsiColor::Yellow.on_default().bold(), "warning", message);
+}
+
+/// A line without label. If nobody listens, nothing is lost.
+pub(super) fn plain(message: impl Display) {
+    let _ = writeln!(anstream::stderr(), "{message}");
+}
+
+fn labeled(style: Style, label: &str, message: &str) {
+    let _ = writeln!(anstream::stderr(), "{style}{label}:{style:#} {message}");
+}

@@ -1,0 +1,94 @@
+//! The command line: typed arguments to a validated job, and the job to a file.
+
+mod args;
+mod draw;
+mod messages;
+mod output;
+mod progress;
+mod values;
+
+use std::error::Error;
+use std::io::{self, ErrorKind};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
+
+use self::args::DrawArgs;
+
+/// Exact hidden-line drawings of 3D models, for print and pen plotters
+#[derive(Parser)]
+#[command(name = "hiddenline", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Draw models as lines, the hidden ones removed
+    Draw(Box<DrawArgs>),
+    /// Print a script that completes commands in a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page in troff format
+    Man {
+        /// Print the page of this command instead
+        command: Option<String>,
+    },
+}
+
+/// Runs the command that was typed.
+pub(crate) fn run() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Draw(args) => match args.job() {
+            Ok(job) => draw::run(&job),
+            Err(usage) => {
+                Cli::command().error(clap::error::ErrorKind::ValueValidation, usage).exit()
+            }
+        },
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "hiddenline", &mut script);
+            output::write_to_stdout(|out| out.write_all(&script)).map_err(Into::into)
+        }
+        Command::Man { command } => man(command.as_deref()),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if is_broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
+        Err(error) => {
+            messages::error(&error.to_string());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
+    let mut command = Cli::command();
+    command.build();
+    let chosen = match name {
+        None => command,
+        Some(name) => command
+            .find_subcommand(name)
+            .cloned()
+            .ok_or_else(|| format!("there is no command `{name}`; see hiddenline --help"))?,
+    };
+    let mut page = Vec::new();
+    clap_mangen::Man::new(chosen).render(&mut page)?;
+    output::write_to_stdout(|out| out.write_all(&page)).map_err(Into::into)
+}
+
+/// Whether whoever reads our output has closed it: no failure of ours.
+fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
+    let mut cause = Some(error);
+    while let Some(error) = cause {
+        if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
+            return true;
+        }
+        cause = error.source();
+    }
+    false
+}

@@ -1,0 +1,124 @@
+//! From a scene and a camera to strokes: the stages between, in order.
+
+use crate::chain::{ChainOptions, chain};
+use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
+use crate::engines::edge::{Engine, Settings, solve};
+use crate::scene::Scene;
+use crate::stats::{Stats, timed};
+use crate::strokes::Drawing;
+use crate::view::Camera;
+
+/// The default contact tolerance as a part of the largest coordinate: twice the spacing of single
+/// precision numbers, which most model files are written in.
+pub const DEFAULT_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
+
+/// The shortest stroke, in millimetres on paper, unless set otherwise: half the width of a pen.
+pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.15;
+
+/// What becomes of hidden lines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum HiddenLines {
+    /// They are left out.
+    #[default]
+    None,
+    /// They are drawn dashed, on their own layer.
+    Dashed,
+    /// They are drawn solid, on their own layer.
+    Solid,
+}
+
+/// What to draw, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrawOptions {
+    /// Which kinds of line.
+    pub lines: LineSelection,
+    /// Faces that meet at more than this angle, in degrees, make a crease.
+    pub crease_deg: f64,
+    /// Hidden lines: left out, or kept with their quantitative invisibility.
+    pub hidden: HiddenLines,
+    /// One two-point stroke for each maximal visible interval of each edge; nothing is joined,
+    /// dropped or de-duplicated, and contact tolerance and shortest stroke are zero.
+    pub exact: bool,
+    /// How hidden lines are found.
+    pub engine: Engine,
+    /// A triangle does not cover a segment both of whose ends lie within this distance of its
+    /// plane, in model units; `None` for the default, which depends on the size of the coordinates.
+    pub contact_tolerance: Option<f64>,
+    /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between two
+    /// visible pieces of one edge are closed. In millimetres on paper.
+    pub shortest_stroke_mm: f64,
+    /// Join only pieces of one kind and one `qi`, so that each stroke's attributes hold for all of
+    /// it; otherwise all that one pen draws is joined.
+    pub apart_by_kind: bool,
+}
+
+impl Default for DrawOptions {
+    fn default() -> Self {
+        Self {
+            lines: LineSelection::default(),
+            crease_deg: DEFAULT_CREASE_DEG,
+            hidden: HiddenLines::default(),
+            exact: false,
+            engine: Engine::default(),
+            contact_tolerance: None,
+            shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
+            apart_by_kind: false,
+        }
+    }
+}
+
+impl DrawOptions {
+    fn settings(&self, scene: &Scene) -> Settings {
+        let default = || {
+            let positions = scene.mesh().positions();
+            let sizes = positions.iter().map(|p| p.abs().max_element());
+            sizes.fold(0.0, f64::max) * DEFAULT_CONTACT_TOLERANCE
+        };
+        Settings {
+            contact_tolerance: if self.exact {
+                0.0
+            } else {
+                self.contact_tolerance.unwrap_or_else(default)
+            },
+            count_layers: self.hidden != HiddenLines::None,
+            find_doubled: !self.exact,
+        }
+    }
+}
+
+/// Draws `scene` as `camera` sees it; counts and times go to `stats`.
+///
+/// `mm_per_unit` tells how many millimetres on paper an image unit becomes for a drawing with the
+/// given, not yet joined, strokes. It is asked only when short strokes are to be dropped.
+pub fn draw(
+    scene: &Scene,
+    camera: &Camera,
+    options: &DrawOptions,
+    mm_per_unit: impl FnOnce(&Drawing) -> f64,
+    stats: &mut Stats,
+) -> Drawing {
+    let view = timed(&mut stats.seconds.classify, || {
+        ViewedScene::new(scene, camera, options.lines, options.crease_deg)
+    });
+    let (visibility, counts, engine) = timed(&mut stats.seconds.visibility, || {
+        solve(&view, options.engine, &options.settings(scene))
+    });
+    stats.engine = engine;
+    stats.drawn_edges = view.drawn().len();
+    stats.counts.candidate_pairs = counts.candidate_pairs;
+    stats.counts.exact_predicates = view.sight().n_exact();
+    timed(&mut stats.seconds.strokes, || {
+        let mut chaining = ChainOptions {
+            hidden: options.hidden != HiddenLines::None,
+            exact: true,
+            apart_by_kind: options.apart_by_kind,
+            shortest: 0.0,
+        };
+        if !options.exact && options.shortest_stroke_mm > 0.0 {
+            let scale = mm_per_unit(&chain(&view, &visibility, &chaining));
+            chaining.shortest = options.shortest_stroke_mm / scale;
+        }
+        chaining.exact = options.exact;
+        chain(&view, &visibility, &chaining)
+    })
+}

@@ -1,0 +1,348 @@
+//! Where the camera stands when its place is given by a name, by angles, or not at all.
+//!
+//! ```text
+//!            z                          azimuth: turns the observer around the target, seen from
+//!            │      ● eye               above counter-clockwise, 0 in front of it (looking along
+//!            │    ╱ ╎ elevation         +y), 90 to the right of it (looking along −x)
+//!     target ●──────╎──── x
+//!           ╱ ╲     ╎                   eye = target + D (sin az · cos el, −cos az · cos el, sin el)
+//!          y   ╲ ╌╌╌╎ azimuth, from −y
+//! ```
+//!
+//! Symmetric views are symmetric to the last bit: sines and cosines of multiples of 30° and 45° are
+//! the right numbers, and what is chosen here is chosen on a coarse binary grid, so that `target −
+//! eye` is exactly the intended direction. (A target given by hand with more bits than the grid
+//! has may round that difference.)
+
+use glam::DVec3;
+use thiserror::Error;
+
+use crate::view::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
+
+/// Azimuth in degrees, unless set otherwise.
+pub const DEFAULT_AZIMUTH_DEG: f64 = 30.0;
+
+/// Elevation in degrees, unless set otherwise.
+pub const DEFAULT_ELEVATION_DEG: f64 = 25.0;
+
+/// An automatic target lies on multiples of the scene's size times two to this power.
+const TARGET_GRID_EXPONENT: i32 = -20;
+
+/// An automatic distance has this many significant bits.
+const DISTANCE_BITS: i32 = 6;
+
+/// Eye minus target lies on multiples of its size times two to this power: three bits fewer than
+/// an `f64` has, so that adding it to the target does not round.
+const OFFSET_GRID_EXPONENT: i32 = -49;
+
+/// A view with a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NamedView {
+    /// Along +y.
+    Front,
+    /// Along −x.
+    Right,
+    /// Along −y.
+    Back,
+    /// Along +x.
+    Left,
+    /// Downwards, with +y up on the page.
+    Top,
+    /// Upwards, with −y up on the page.
+    Bottom,
+    /// From the front right above; x, y and z equally foreshortened.
+    Isometric,
+    /// Azimuth 20.705°, elevation 19.471°: x and z equally foreshortened, y half as long.
+    Dimetric,
+    /// Azimuth 30°, elevation 25°: every axis foreshortened differently.
+    Trimetric,
+}
+
+/// From where the target is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Standpoint {
+    /// From a point.
+    Eye(DVec3),
+    /// From a direction, in degrees, at a distance or as far as shows the whole scene.
+    Angles {
+        /// Around the vertical; 0 is in front.
+        azimuth_deg: f64,
+        /// Above the horizontal.
+        elevation_deg: f64,
+        /// Model units; `None` for automatic.
+        distance: Option<f64>,
+    },
+    /// From where a named view is seen, at a distance or as far as shows the whole scene.
+    Named {
+        /// Which view.
+        view: NamedView,
+        /// Model units; `None` for automatic.
+        distance: Option<f64>,
+    },
+}
+
+/// Perspective or not, without numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProjectionKind {
+    /// Through the eye.
+    Perspective,
+    /// Parallel.
+    Orthographic,
+}
+
+/// A camera as asked for; what is `None` is chosen to suit the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Framing {
+    /// From where.
+    pub standpoint: Standpoint,
+    /// At what: unless given, the middle of the scene's bounding box.
+    pub target: Option<DVec3>,
+    /// What is up on the page: unless given, +z, or +y when looking along z.
+    pub up: Option<DVec3>,
+    /// Unless given, orthographic for named views and perspective otherwise.
+    pub projection: Option<ProjectionKind>,
+    /// Vertical field of view in degrees.
+    pub fov_deg: f64,
+    /// Near plane, see [`Projection::Perspective`].
+    pub near: f64,
+}
+
+impl Default for Framing {
+    fn default() -> Self {
+        Self {
+            standpoint: Standpoint::Angles {
+                azimuth_deg: DEFAULT_AZIMUTH_DEG,
+                elevation_deg: DEFAULT_ELEVATION_DEG,
+                distance: None,
+            },
+            target: None,
+            up: None,
+            projection: None,
+            fov_deg: DEFAULT_FOV_DEG,
+            near: DEFAULT_NEAR,
+        }
+    }
+}
+
+/// Why a framing gives no camera.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum FramingError {
+    /// The distance is not a positive number.
+    #[error("the distance must be above 0, not {0}")]
+    Distance(f64),
+    /// An angle is not finite.
+    #[error("azimuth and elevation must be finite")]
+    Angle,
+    /// The numbers make no camera.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+}
+
+impl Framing {
+    /// The camera for a scene within `bounds`, its (lowest, highest) corner.
+    ///
+    /// # Errors
+    /// See [`FramingError`].
+    pub fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, FramingError> {
+        let target = self.target.unwrap_or_else(|| middle(bounds));
+        let eye = match self.standpoint {
+            Standpoint::Eye(eye) => eye,
+            Standpoint::Angles { azimuth_deg, elevation_deg, distance } => {
+                if !(azimuth_deg.is_finite() && elevation_deg.is_finite()) {
+                    return Err(FramingError::Angle);
+                }
+                let towards_eye = direction(azimuth_deg, elevation_deg);
+                target + self.offset(towards_eye, target, distance, bounds)?
+            }
+            Standpoint::Named { view, distance } => {
+                target + self.offset(view.towards_eye(), target, distance, bounds)?
+            }
+        };
+        let projection = match self.projection_kind() {
+            ProjectionKind::Perspective => {
+                Projection::Perspective { fov_deg: self.fov_deg, near: self.near }
+            }
+            ProjectionKind::Orthographic => Projection::Orthographic,
+        };
+        let up = self.up.unwrap_or_else(|| self.default_up(target - eye));
+        Ok(Camera::new(eye, target, up, projection)?)
+    }
+
+    fn projection_kind(&self) -> ProjectionKind {
+        self.projection.unwrap_or(match self.standpoint {
+            Standpoint::Named { .. } => ProjectionKind::Orthographic,
+            Standpoint::Eye(_) | Standpoint::Angles { .. } => ProjectionKind::Perspective,
+        })
+    }
+
+    fn default_up(&self, forward: DVec3) -> DVec3 {
+        match self.standpoint {
+            Standpoint::Named { view: NamedView::Bottom, .. } => DVec3::NEG_Y,
+            _ if forward.x == 0.0 && forward.y == 0.0 => DVec3::Y,
+            _ => DVec3::Z,
+        }
+    }
+
+    /// Eye minus target.
+    fn offset(
+        &self,
+        towards_eye: DVec3,
+        target: DVec3,
+        distance: Option<f64>,
+        bounds: (DVec3, DVec3),
+    ) -> Result<DVec3, FramingError> {
+        let distance = match distance {
+            Some(distance) if distance > 0.0 && distance.is_finite() => distance,
+            Some(distance) => return Err(FramingError::Distance(distance)),
+            None => self.distance_that_shows(bounds, target),
+        };
+        let size = distance.max(target.abs().max_element());
+        let offset = on_grid(towards_eye * distance, power_of_two_at(size), OFFSET_GRID_EXPONENT);
+        Ok(offset)
+    }
+
+    /// How far away the sphere around the bounding box fills the field of view.
+    fn distance_that_shows(&self, (low, high): (DVec3, DVec3), target: DVec3) -> f64 {
+        let farthest = (high - target).abs().max((low - target).abs());
+        let radius = farthest.length();
+        let half_angle = self.fov_deg.clamp(0.0, 180.0).to_radians() / 2.0;
+        let distance = radius / libm::sin(half_angle);
+        let step = power_of_two_at(distance) * libm::exp2(f64::from(1 - DISTANCE_BITS));
+        let rounded_up = (distance / step).ceil() * step;
+        if rounded_up > 0.0 { rounded_up } else { 1.0 }
+    }
+}
+
+impl NamedView {
+    /// Every view, in the order of the documentation.
+    pub const ALL: [Self; 9] = [
+        Self::Front,
+        Self::Right,
+        Self::Back,
+        Self::Left,
+        Self::Top,
+        Self::Bottom,
+        Self::Isometric,
+        Self::Dimetric,
+        Self::Trimetric,
+    ];
+
+    /// The name used on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Right => "right",
+            Self::Back => "back",
+            Self::Left => "left",
+            Self::Top => "top",
+            Self::Bottom => "bottom",
+            Self::Isometric => "isometric",
+            Self::Dimetric => "dimetric",
+            Self::Trimetric => "trimetric",
+        }
+    }
+
+    /// Direction from the target to the eye, of length one up to rounding.
+    fn towards_eye(self) -> DVec3 {
+        match self {
+            Self::Front => direction(0.0, 0.0),
+            Self::Right => direction(90.0, 0.0),
+            Self::Back => direction(180.0, 0.0),
+            Self::Left => direction(270.0, 0.0),
+            Self::Top => direction(0.0, 90.0),
+            Self::Bottom => direction(0.0, -90.0),
+            Self::Isometric => DVec3::new(1.0, -1.0, 1.0) / 3f64.sqrt(),
+            Self::Dimetric => direction(20.705, 19.471),
+            Self::Trimetric => direction(30.0, 25.0),
+        }
+    }
+}
+
+/// The direction from target to eye for two angles in degrees.
+fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
+    let (sin_azimuth, cos_azimuth) = sin_cos_deg(azimuth_deg);
+    let (sin_elevation, cos_elevation) = sin_cos_deg(elevation_deg);
+    DVec3::new(sin_azimuth * cos_elevation, -cos_azimuth * cos_elevation, sin_elevation)
+}
+
+/// Sine and cosine of an angle in degrees, right for all multiples of 30° and 45°.
+///
+/// The angle is folded into 0°–45° first, which is exact, so that every identity between the
+/// quadrants holds to the last bit: `sin(180° − a) = sin a`, `cos a = sin(90° − a)` and so on.
+pub fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
+    let turn = angle_deg.abs() % 360.0;
+    let (half, below) = if turn > 180.0 { (360.0 - turn, true) } else { (turn, false) };
+    let (quarter, behind) = if half > 90.0 { (180.0 - half, true) } else { (half, false) };
+    let (eighth, swapped) = if quarter > 45.0 { (90.0 - quarter, true) } else { (quarter, false) };
+    let (sin, cos) = if eighth == 30.0 {
+        (0.5, 3f64.sqrt() / 2.0)
+    } else if eighth == 45.0 {
+        (std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2)
+    } else {
+        let radians = eighth.to_radians();
+        (libm::sin(radians), libm::cos(radians))
+    };
+    let (sin, cos) = if swapped { (cos, sin) } else { (sin, cos) };
+    let sin = if below != (angle_deg < 0.0) { -sin } else { sin };
+    let cos = if behind { -cos } else { cos };
+    // Adding zero turns −0 into 0.
+    (sin + 0.0, cos + 0.0)
+}
+
+/// The middle of a box, on a grid of about a millionth of its size.
+fn middle((low, high): (DVec3, DVec3)) -> DVec3 {
+    let middle = low / 2.0 + high / 2.0;
+    on_grid(middle, power_of_two_at((high - low).max_element()), TARGET_GRID_EXPONENT)
+}
+
+/// `v` rounded to multiples of `size · 2^exponent`, `size` being a power of two.
+fn on_grid(v: DVec3, size: f64, exponent: i32) -> DVec3 {
+    let step = size * libm::exp2(f64::from(exponent));
+    let rounded = (v / step).round() * step;
+    if rounded.is_finite() { rounded + DVec3::ZERO } else { v }
+}
+
+/// The largest power of two that is not above `x`; 0 for 0.
+fn power_of_two_at(x: f64) -> f64 {
+    if x > 0.0 && x.is_finite() { libm::ldexp(1.0, libm::ilogb(x)) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sines_of_round_angles_are_the_right_numbers() {
+        let half_sqrt_3 = 0.866_025_403_784_438_6;
+        let half_sqrt_2 = std::f64::consts::FRAC_1_SQRT_2;
+        for (angle, sin, cos) in [
+            (0.0, 0.0, 1.0),
+            (30.0, 0.5, half_sqrt_3),
+            (45.0, half_sqrt_2, half_sqrt_2),
+            (60.0, half_sqrt_3, 0.5),
+            (90.0, 1.0, 0.0),
+            (120.0, half_sqrt_3, -0.5),
+            (135.0, half_sqrt_2, -half_sqrt_2),
+            (180.0, 0.0, -1.0),
+            (210.0, -0.5, -half_sqrt_3),
+            (270.0, -1.0, 0.0),
+            (315.0, -half_sqrt_2, half_sqrt_2),
+            (-90.0, -1.0, 0.0),
+            (-30.0, -0.5, half_sqrt_3),
+            (-240.0, half_sqrt_3, -0.5),
+            (750.0, 0.5, half_sqrt_3),
+        ] {
+            assert_eq!(sin_cos_deg(angle), (sin, cos), "{angle}°");
+        }
+    }
+
+    #[test]
+    fn other_sines_agree_with_radians() {
+        for step in -500..500 {
+            let angle = f64::from(step) * 1.37;
+            let (sin, cos) = sin_cos_deg(angle);
+            assert!((sin - angle.to_radians().sin()).abs() < 1e-14, "sin {angle}°");
+            assert!((cos - angle.to_radians().cos()).abs() < 1e-14, "cos {angle}°");
+        }
+    }
+}

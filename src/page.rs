@@ -1,0 +1,286 @@
+//! The page: where on the paper the image goes, and what of it stays within the margins.
+//!
+//! ```text
+//!   (0, 0) ●──────────────────────────► x, mm     image          y
+//!          │   margin                                            ▲   ╱│
+//!          │   ┌──────────────────┐                              │ ╱  │
+//!          │   │     ╱│           │                              └────┴──► x
+//!          │   │   ╱  │           │               page_from_image: one scale for both
+//!          │   └──────────────────┘               axes, y turned downwards, a shift
+//!          ▼ y, mm
+//! ```
+//!
+//! Nothing is written outside the margins: lines that would leave are cropped there.
+
+mod crop;
+mod dash;
+mod paper;
+
+use glam::{DAffine2, DMat2, DVec2};
+use thiserror::Error;
+
+use crate::draw::HiddenLines;
+use crate::plot::{Layer, Pen, Plot, Polylines};
+use crate::strokes::Drawing;
+use crate::view::{Camera, Projection};
+
+pub use self::dash::Dash;
+pub use self::paper::{Paper, PaperError, parse_length_mm};
+
+/// Empty border of the page in millimetres, unless set otherwise.
+pub const DEFAULT_MARGIN_MM: f64 = 10.0;
+
+/// Width of the pen's line in millimetres, unless set otherwise.
+pub const DEFAULT_PEN_WIDTH_MM: f64 = 0.3;
+
+/// A perspective drawing is fitted by what lies within this angle of the direction of view, across
+/// and up: near the eye's own plane images are arbitrarily far out, and fitting these would shrink
+/// everything else to a dot.
+pub const WIDEST_FITTED_ANGLE_DEG: f64 = 60.0;
+
+/// Cropping leaves alone what is outside the margins by less than half of the last digit that
+/// writers write, and moves it onto the margin: such points are there by rounding only.
+const CROP_SLACK_MM: f64 = 0.0005;
+
+/// Which way the paper lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Orientation {
+    /// At least as wide as high.
+    Landscape,
+    /// At least as high as wide.
+    Portrait,
+}
+
+/// How large the drawing is on the page.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Placement {
+    /// As large as the margins allow, centred.
+    #[default]
+    Fit,
+    /// At a scale, centred. In perspective it holds at the distance of the target.
+    Scale {
+        /// Millimetres on paper for one model unit.
+        mm_per_unit: f64,
+    },
+    /// The height between the margins is exactly the vertical field of view.
+    FieldOfView,
+}
+
+/// Paper, margin and placement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PageOptions {
+    /// The sheet.
+    pub paper: Paper,
+    /// Which way it lies; `None` to suit the drawing.
+    pub orientation: Option<Orientation>,
+    /// Empty border on all four sides.
+    pub margin_mm: f64,
+    /// How large the drawing is.
+    pub placement: Placement,
+}
+
+impl Default for PageOptions {
+    fn default() -> Self {
+        Self {
+            paper: Paper::A4,
+            orientation: None,
+            margin_mm: DEFAULT_MARGIN_MM,
+            placement: Placement::Fit,
+        }
+    }
+}
+
+/// Why a drawing cannot be placed on a page.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum PageError {
+    /// Nothing of the sheet is left between the margins.
+    #[error(
+        "margins of {margin_mm} mm leave nothing of a page of {width_mm} x {height_mm} mm; \
+         give a smaller --margin or a larger --page"
+    )]
+    Margins {
+        /// The margin.
+        margin_mm: f64,
+        /// Width of the sheet.
+        width_mm: f64,
+        /// Height of the sheet.
+        height_mm: f64,
+    },
+    /// The margin is negative or not a number.
+    #[error("the margin must be 0 or more, not {0} mm")]
+    NegativeMargin(f64),
+    /// The scale is not a positive number.
+    #[error("the drawing's scale must be above 0")]
+    Scale,
+    /// An orthographic camera has no field of view.
+    #[error("an orthographic view has no field of view to fit; give --projection perspective")]
+    NoFieldOfView,
+}
+
+/// A sheet of paper and the map of the image onto it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Page {
+    /// The paper as it lies.
+    pub paper: Paper,
+    /// Empty border on all four sides.
+    pub margin_mm: f64,
+    /// Image coordinates (y upwards) to page millimetres (y downwards).
+    pub page_from_image: DAffine2,
+}
+
+/// What the pens draw and how it is labeled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlotOptions {
+    /// Width of the pens' lines in millimetres.
+    pub pen_width_mm: f64,
+    /// Hidden lines: none, dashed, or solid.
+    pub hidden: HiddenLines,
+    /// Lengths of dashes and gaps.
+    pub dash: Dash,
+    /// What the drawing shows.
+    pub title: String,
+    /// The command that made it; empty for none.
+    pub source: String,
+}
+
+/// A plot, and whether all of the drawing is on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedPlot {
+    /// The plot.
+    pub plot: Plot,
+    /// Whether lines were cut off at the margins.
+    pub cropped: bool,
+}
+
+impl Page {
+    /// Chooses orientation and map for a drawing. O(points).
+    ///
+    /// # Errors
+    /// See [`PageError`].
+    pub fn new(
+        drawing: &Drawing,
+        camera: &Camera,
+        options: &PageOptions,
+    ) -> Result<Self, PageError> {
+        let margin_mm = options.margin_mm;
+        if !(margin_mm >= 0.0 && margin_mm.is_finite()) {
+            return Err(PageError::NegativeMargin(margin_mm));
+        }
+        let (low, high) = fitted_bounds(drawing, camera).unwrap_or_default();
+        let suits = match options.placement {
+            Placement::FieldOfView => Orientation::Landscape,
+            _ if high.y - low.y > high.x - low.x => Orientation::Portrait,
+            _ => Orientation::Landscape,
+        };
+        let paper = options.paper.turned(options.orientation, suits);
+        let sheet = DVec2::new(paper.width_mm, paper.height_mm);
+        let usable = sheet - DVec2::splat(2.0 * margin_mm);
+        if !(usable.min_element() > 0.0) {
+            return Err(PageError::Margins {
+                margin_mm,
+                width_mm: paper.width_mm,
+                height_mm: paper.height_mm,
+            });
+        }
+        let (scale, center) = match options.placement {
+            Placement::Fit => {
+                let scale = (usable / (high - low)).min_element();
+                // A drawing without extent, or none at all, has no scale of its own.
+                (if scale.is_finite() { scale } else { 1.0 }, low / 2.0 + high / 2.0)
+            }
+            Placement::Scale { mm_per_unit } => {
+                let units_per_image = match camera.projection() {
+                    Projection::Perspective { .. } => camera.forward().length(),
+                    Projection::Orthographic => 1.0,
+                };
+                (mm_per_unit * units_per_image, low / 2.0 + high / 2.0)
+            }
+            Placement::FieldOfView => match camera.projection() {
+                Projection::Perspective { fov_deg, .. } => {
+                    (usable.y / (2.0 * libm::tan(fov_deg.to_radians() / 2.0)), DVec2::ZERO)
+                }
+                Projection::Orthographic => return Err(PageError::NoFieldOfView),
+            },
+        };
+        if !(scale > 0.0 && scale.is_finite()) {
+            return Err(PageError::Scale);
+        }
+        let linear = DMat2::from_diagonal(DVec2::new(scale, -scale));
+        let page_from_image =
+            DAffine2::from_mat2_translation(linear, sheet / 2.0 - linear * center);
+        Ok(Self { paper, margin_mm, page_from_image })
+    }
+
+    /// Millimetres on paper for one unit of the image.
+    pub fn mm_per_image_unit(&self) -> f64 {
+        self.page_from_image.matrix2.x_axis.x
+    }
+
+    /// Maps strokes onto the page, crops them to the margins and gives each to its pen.
+    ///
+    /// Visible strokes are layer 1. Unless hidden lines are left out, hidden strokes are layer 2.
+    /// Strokes keep their order. O(points + dashes).
+    pub fn plot(&self, drawing: &Drawing, options: PlotOptions) -> PlacedPlot {
+        let margin = DVec2::splat(self.margin_mm);
+        let sheet = DVec2::new(self.paper.width_mm, self.paper.height_mm);
+        let window = crop::Window { low: margin, high: sheet - margin, slack: CROP_SLACK_MM };
+        let mut visible = Polylines::default();
+        let mut hidden = Polylines::default();
+        let mut cropped = false;
+        let mut on_page = Vec::new();
+        for stroke in drawing.iter() {
+            on_page.clear();
+            on_page.extend(stroke.points.iter().map(|&p| self.page_from_image.transform_point2(p)));
+            cropped |= window.crop(&mut on_page, |piece| match (stroke.qi, options.hidden) {
+                (0, _) => visible.push(piece.iter().copied()),
+                (_, HiddenLines::None) => {}
+                (_, HiddenLines::Solid) => hidden.push(piece.iter().copied()),
+                (_, HiddenLines::Dashed) => {
+                    options.dash.for_each_dash(piece, |dash| hidden.push(dash.iter().copied()));
+                }
+            });
+        }
+        let pen = |color: &str| Pen { width_mm: options.pen_width_mm, color: color.into() };
+        let mut layers =
+            vec![Layer { number: 1, name: "visible".into(), pen: pen("#000000"), lines: visible }];
+        if options.hidden != HiddenLines::None {
+            let pen = pen("#808080");
+            layers.push(Layer { number: 2, name: "hidden".into(), pen, lines: hidden });
+        }
+        let plot = Plot {
+            width_mm: self.paper.width_mm,
+            height_mm: self.paper.height_mm,
+            title: options.title,
+            source: options.source,
+            layers,
+        };
+        PlacedPlot { plot, cropped }
+    }
+}
+
+/// The box that is fitted to the page: around all strokes or, in perspective, around what of them
+/// lies within the widest angle. `None` without strokes.
+fn fitted_bounds(drawing: &Drawing, camera: &Camera) -> Option<(DVec2, DVec2)> {
+    let bounds = drawing.bounds()?;
+    if camera.projection() == Projection::Orthographic {
+        return Some(bounds);
+    }
+    let widest = DVec2::splat(libm::tan(WIDEST_FITTED_ANGLE_DEG.to_radians()));
+    if bounds.0.cmpge(-widest).all() && bounds.1.cmple(widest).all() {
+        return Some(bounds);
+    }
+    let window = crop::Window { low: -widest, high: widest, slack: 0.0 };
+    let mut within: Option<(DVec2, DVec2)> = None;
+    let mut points = Vec::new();
+    for stroke in drawing.iter() {
+        points.clear();
+        points.extend_from_slice(stroke.points);
+        window.crop(&mut points, |piece| {
+            for &p in piece {
+                within = Some(within.map_or((p, p), |(low, high)| (low.min(p), high.max(p))));
+            }
+        });
+    }
+    // Looking past everything: then there is nothing but the far outside to fit.
+    Some(within.unwrap_or(bounds))
+}

@@ -1,0 +1,176 @@
+//! Why a model could not be read: what, where, and how to mend it, in one line.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::mesh::MeshError;
+
+/// A model that cannot be read: the file, the line if the format has lines, and the fault.
+///
+/// Displays as one line, `file:line: what; how to mend it`.
+#[derive(Debug, Error)]
+pub struct ReadError {
+    /// Name of the file as it was given.
+    pub name: String,
+    /// Line in the file, counted from 1; `None` where there is no such place.
+    pub line: Option<usize>,
+    /// What is wrong.
+    #[source]
+    pub fault: Fault,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_one_line(f, &self.name)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        f.write_str(": ")?;
+        write_one_line(f, &self.fault.to_string())
+    }
+}
+
+/// Writes text with control characters (line ends among them) replaced by blanks.
+pub(super) fn write_one_line(f: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
+    text.chars().try_for_each(|c| fmt::Write::write_char(f, if c.is_control() { ' ' } else { c }))
+}
+
+/// What is wrong with a model file.
+#[derive(Debug, Error)]
+pub enum Fault {
+    /// The operating system refused.
+    #[error("cannot be read: {0}")]
+    Io(#[from] std::io::Error),
+    /// Neither name nor content tell the format.
+    #[error(
+        "cannot tell the format from its name or content; \
+         say which of obj, stl, ply and off it is"
+    )]
+    UnknownFormat,
+    /// Zero bytes.
+    #[error("the file is empty; export the model again")]
+    Empty,
+    /// Nothing that could be drawn is left.
+    #[error("{}", no_faces(*.vertices, *.lines, *.degenerate))]
+    NoFaces {
+        /// Vertices that were read.
+        vertices: usize,
+        /// Line records that were left out.
+        lines: usize,
+        /// Faces that were left out for having fewer than three different corners.
+        degenerate: usize,
+    },
+    /// A text format holds bytes that are not text, and no face.
+    #[error("this is not {0} text; check the file, or say which format it is")]
+    NotText(&'static str),
+    /// A word that should be a number.
+    #[error("`{0}` is not a decimal number; correct it or export the model again")]
+    BadNumber(String),
+    /// A number that is infinite, not a number, or too large for a double.
+    #[error("`{0}` is not a finite number; correct it or export the model again")]
+    NotFinite(String),
+    /// A binary format holds such a number.
+    #[error("{element} {index} has a coordinate that is not finite; export the model again")]
+    ElementNotFinite {
+        /// "vertex" or "triangle".
+        element: &'static str,
+        /// Counted from 1.
+        index: usize,
+    },
+    /// Fewer numbers on a line than the record needs.
+    #[error("{needed} numbers expected for a {record}, {found} found; correct the line")]
+    TooFewNumbers {
+        /// What the line describes.
+        record: &'static str,
+        /// How many numbers it takes.
+        needed: usize,
+        /// How many are there.
+        found: usize,
+    },
+    /// A word that should be the number of a vertex.
+    #[error("`{0}` is not the number of a vertex; correct it or export the model again")]
+    BadIndex(String),
+    /// Vertex 0 in a format that counts from 1.
+    #[error("there is no vertex 0, OBJ counts from 1; correct it or export the model again")]
+    ZeroIndex,
+    /// A face uses a vertex that does not exist.
+    #[error("{}", missing_vertex(.index, *.vertices))]
+    MissingVertex {
+        /// The vertex as the file names it.
+        index: String,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// The file ends before its time.
+    #[error("the file ends early: {expected} expected, {found}; export or copy the model again")]
+    Truncated {
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// Another word than the format allows here.
+    #[error("{expected} expected, `{found}` found; correct the line or export the model again")]
+    Unexpected {
+        /// What the format asks for.
+        expected: &'static str,
+        /// What is there.
+        found: String,
+    },
+    /// A part of a format that is not read.
+    #[error("{what} cannot be read; {remedy}")]
+    Unsupported {
+        /// What it is.
+        what: &'static str,
+        /// How the model can be had otherwise.
+        remedy: &'static str,
+    },
+    /// What a parsing library says.
+    #[error("{0}; correct the file or export the model again")]
+    Parser(String),
+    /// The faces are no mesh.
+    #[error("{0}; export the model again")]
+    Mesh(#[from] MeshError),
+}
+
+fn no_faces(vertices: usize, lines: usize, degenerate: usize) -> String {
+    let what = if degenerate > 0 {
+        format!("all {degenerate} faces have fewer than three different corners")
+    } else if lines > 0 {
+        format!("{lines} line records only")
+    } else if vertices > 0 {
+        format!("{vertices} points only")
+    } else {
+        "no vertices either".to_owned()
+    };
+    format!("no face to draw: {what}; export the model as a surface of polygons")
+}
+
+fn missing_vertex(index: &str, vertices: usize) -> String {
+    let there_are = match vertices {
+        0 => "there are no vertices".to_owned(),
+        1 => "there is only one vertex".to_owned(),
+        _ => format!("there are only {vertices} vertices"),
+    };
+    format!("a face uses vertex {index}, but {there_are}; correct it or export the model again")
+}
+
+/// A fault and its line, before the name of the file is put to it.
+#[derive(Debug)]
+pub(super) struct Located {
+    pub(super) line: Option<usize>,
+    pub(super) fault: Fault,
+}
+
+impl Located {
+    pub(super) fn at(line: usize, fault: Fault) -> Self {
+        Self { line: Some(line), fault }
+    }
+}
+
+impl From<Fault> for Located {
+    fn from(fault: Fault) -> Self {
+        Self { line: None, fault }
+    }
+}

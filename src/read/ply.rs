@@ -1,0 +1,306 @@
+//! PLY by ply-rs-bw: text, and binary of either byte order.
+//!
+//! Elements are read a batch at a time into small structs of our own and appended to flat arrays,
+//! so that memory follows the data and not the counts of the header.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
+    ScalarType,
+};
+
+use super::Draft;
+use super::error::{Fault, Located};
+use super::text::{Words, shown};
+use super::warning::Notice;
+use crate::mesh::MeshError;
+
+/// Elements read at a time.
+const BATCH: usize = 4096;
+
+/// Names of the list of a face's corners.
+const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// A position as it is read; coordinates that are not there stay zero.
+#[derive(Debug, Default)]
+struct Vertex {
+    position: DVec3,
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let coordinate = match name {
+            "x" => &mut self.position.x,
+            "y" => &mut self.position.y,
+            "z" => &mut self.position.z,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        *coordinate = match value {
+            Property::Char(v) => v.into(),
+            Property::UChar(v) => v.into(),
+            Property::Short(v) => v.into(),
+            Property::UShort(v) => v.into(),
+            Property::Int(v) => v.into(),
+            Property::UInt(v) => v.into(),
+            Property::Float(v) => v.into(),
+            Property::Double(v) => v,
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// The corners of a face as the file numbers them.
+#[derive(Debug, Default)]
+struct Face {
+    corners: Vec<i64>,
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        fn widened<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
+            list.into_iter().map(Into::into).collect()
+        }
+        if !CORNER_LISTS.contains(&name) {
+            return PropertyAccessResult::Ignored;
+        }
+        self.corners = match value {
+            Property::ListChar(list) => widened(list),
+            Property::ListUChar(list) => widened(list),
+            Property::ListShort(list) => widened(list),
+            Property::ListUShort(list) => widened(list),
+            Property::ListInt(list) => widened(list),
+            Property::ListUInt(list) => widened(list),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// An element that is passed over.
+#[derive(Debug)]
+struct Skipped;
+
+impl PropertyAccess for Skipped {
+    fn new() -> Self {
+        Self
+    }
+}
+
+/// Reads PLY of any encoding.
+pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let bytes = &*with_line_feeds(bytes);
+    let mut reader = Reader::new(bytes);
+    let mut header = Parser::<Skipped>::new().read_header(&mut reader).map_err(located)?;
+    check(&header)?;
+    let is_text = header.encoding == Encoding::Ascii;
+    if is_text {
+        widen_floats(&mut header);
+    }
+    let n_vertices = header.elements.get("vertex").map_or(0, |element| element.count);
+    let mut draft = Draft::default();
+    for element in header.elements.values() {
+        let mut batches = Batches { reader: &mut reader, header: &header, element, done: 0 };
+        match element.name.as_str() {
+            "vertex" => read_vertices(&mut batches, &mut draft)?,
+            "face" => read_faces(&mut batches, n_vertices, &mut draft)?,
+            other => {
+                batches.skip()?;
+                if other == "edge" && element.count > 0 {
+                    draft.n_lines = element.count;
+                    let first_line = None;
+                    draft.notices.push(Notice::LinesAndPoints { count: element.count, first_line });
+                }
+            }
+        }
+    }
+    let rest = if is_text { reader.get_ref().trim_ascii() } else { reader.get_ref() };
+    if !rest.is_empty() {
+        draft.notices.push(Notice::TrailingBytes { count: rest.len() });
+    }
+    Ok(draft)
+}
+
+/// Text whose lines end in CR alone, with LF in their place; all else as it is.
+fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let mut words = Words::new(bytes, None);
+    let is_text = [&b"ply"[..], b"format", b"ascii"].iter().all(|&w| words.next() == Some(w));
+    if is_text && !bytes.contains(&b'\n') {
+        Cow::Owned(bytes.iter().map(|&c| if c == b'\r' { b'\n' } else { c }).collect())
+    } else {
+        Cow::Borrowed(bytes)
+    }
+}
+
+/// Refuses headers that lack positions or faces.
+fn check(header: &Header) -> Result<(), Fault> {
+    let Some(vertex) = header.elements.get("vertex") else {
+        return Err(Fault::NoFaces { vertices: 0, lines: 0, degenerate: 0 });
+    };
+    let is_number = |name| {
+        vertex.properties.get(name).is_some_and(|p| matches!(p.data_type, PropertyType::Scalar(_)))
+    };
+    if !["x", "y", "z"].into_iter().all(is_number) {
+        return Err(Fault::Unsupported {
+            what: "a PLY file whose vertices lack x, y or z",
+            remedy: "export it with positions",
+        });
+    }
+    let Some(face) = header.elements.get("face") else {
+        if header.elements.contains_key("tristrips") {
+            return Err(Fault::Unsupported {
+                what: "triangle strips in PLY",
+                remedy: "export the faces as polygons",
+            });
+        }
+        return Err(Fault::NoFaces { vertices: vertex.count, lines: 0, degenerate: 0 });
+    };
+    let is_list = |name| {
+        face.properties.get(name).is_some_and(|p| {
+            matches!(&p.data_type, PropertyType::List(_, item)
+                if !matches!(item, ScalarType::Float | ScalarType::Double))
+        })
+    };
+    if !CORNER_LISTS.into_iter().any(is_list) {
+        return Err(Fault::Unsupported {
+            what: "a PLY file whose faces have no list of whole numbers named vertex_indices",
+            remedy: "export it with such a list",
+        });
+    }
+    Ok(())
+}
+
+/// Makes text be read as doubles: its digits need not have been single precision.
+fn widen_floats(header: &mut Header) {
+    let properties =
+        header.elements.values_mut().flat_map(|element| element.properties.values_mut());
+    for property in properties {
+        if property.data_type == PropertyType::Scalar(ScalarType::Float) {
+            property.data_type = PropertyType::Scalar(ScalarType::Double);
+        }
+    }
+}
+
+/// Reads one kind of element, a batch at a time.
+struct Batches<'r, 'a> {
+    reader: &'r mut Reader<&'a [u8]>,
+    header: &'r Header,
+    element: &'r ElementDef,
+    done: usize,
+}
+
+impl Batches<'_, '_> {
+    /// The next elements and the line of the first; `None` when all have been read.
+    fn next<E: PropertyAccess>(&mut self) -> Result<Option<(usize, Vec<E>)>, Located> {
+        let count = BATCH.min(self.element.count - self.done);
+        if count == 0 {
+            return Ok(None);
+        }
+        let line = self.reader.line();
+        let batch = ElementDef { count, ..self.element.clone() };
+        let elements = Parser::new()
+            .read_payload_for_element(self.reader, &batch, self.header)
+            .map_err(|error| self.located(error))?;
+        self.done += count;
+        Ok(Some((line, elements)))
+    }
+
+    fn skip(&mut self) -> Result<(), Located> {
+        // In binary, elements without properties take no bytes: there may be any number of them.
+        if self.header.encoding == Encoding::Ascii || !self.element.properties.is_empty() {
+            while self.next::<Skipped>()?.is_some() {}
+        }
+        Ok(())
+    }
+
+    fn located(&self, error: ParseError) -> Located {
+        let is_text = self.header.encoding == Encoding::Ascii;
+        if error.kind() != std::io::ErrorKind::UnexpectedEof {
+            let Located { line, fault } = located(error);
+            return Located { line: line.filter(|_| is_text), fault };
+        }
+        Located {
+            line: error.line().filter(|_| is_text),
+            fault: Fault::Truncated {
+                expected: format!("{} elements `{}`", self.element.count, self.element.name),
+                found: "there are fewer".to_owned(),
+            },
+        }
+    }
+
+    /// The line of an element of a batch, in text.
+    fn line(&self, first: usize, index: usize) -> Option<usize> {
+        (self.header.encoding == Encoding::Ascii).then_some(first + index)
+    }
+}
+
+/// A parser's message on one line and without what it quotes of the file, which may be long.
+fn located(error: ParseError) -> Located {
+    let text = error.to_string();
+    let message = text.split_once('\n').map_or(text.as_str(), |(first, _)| first);
+    let message = match (error.line(), message.split_once(": ")) {
+        (Some(_), Some((_, message))) => message,
+        _ => message,
+    };
+    let message = match text.rsplit_once("Value: '").and_then(|(_, rest)| rest.split_once('\'')) {
+        Some((value, _)) => format!("`{}` does not fit its type", shown(value.as_bytes())),
+        None => message.trim_end_matches('.').to_owned(),
+    };
+    Located { line: error.line(), fault: Fault::Parser(message) }
+}
+
+fn read_vertices(batches: &mut Batches<'_, '_>, draft: &mut Draft) -> Result<(), Located> {
+    while let Some((line, vertices)) = batches.next::<Vertex>()? {
+        for (i, Vertex { position }) in vertices.into_iter().enumerate() {
+            if !position.is_finite() {
+                let index = draft.soup.positions.len() + 1;
+                let fault = Fault::ElementNotFinite { element: "vertex", index };
+                return Err(Located { line: batches.line(line, i), fault });
+            }
+            draft.soup.positions.push(position);
+        }
+    }
+    Ok(())
+}
+
+fn read_faces(
+    batches: &mut Batches<'_, '_>,
+    n_vertices: usize,
+    draft: &mut Draft,
+) -> Result<(), Located> {
+    while let Some((line, faces)) = batches.next::<Face>()? {
+        for (i, Face { corners }) in faces.into_iter().enumerate() {
+            let line = batches.line(line, i);
+            let start = draft.soup.corners.len();
+            for corner in corners {
+                let index = u32::try_from(corner).ok().filter(|&c| (c as usize) < n_vertices);
+                let missing =
+                    || Fault::MissingVertex { index: corner.to_string(), vertices: n_vertices };
+                let index = index.ok_or_else(|| Located { line, fault: missing() })?;
+                draft.soup.corners.push(index);
+            }
+            if draft.soup.corners.len() >= u32::MAX as usize {
+                return Err(Fault::Mesh(MeshError::TooLarge).into());
+            }
+            if draft.soup.corners.len() < start + 3 {
+                draft.soup.corners.truncate(start);
+                draft.leave_out_face(line);
+            } else {
+                draft.soup.face_starts.push(draft.soup.corners.len() as u32);
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,101 @@
+//! What a reader left out although the model can be drawn.
+
+use std::fmt;
+
+use super::error::write_one_line;
+
+/// Something that was left out of a model, with the name of its file.
+///
+/// Displays as one line, `file: what`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// Name of the file as it was given.
+    pub name: String,
+    /// What was left out.
+    pub notice: Notice,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_one_line(f, &self.name)?;
+        f.write_str(": ")?;
+        write_one_line(f, &self.notice.to_string())
+    }
+}
+
+/// What was left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Notice {
+    /// Faces with fewer than three different corners.
+    DegenerateFaces {
+        /// How many.
+        count: usize,
+        /// Line of the first, where the reader knows it.
+        first_line: Option<usize>,
+    },
+    /// Records that draw lines or points, not faces (`l` and `p` in OBJ, edges in PLY).
+    LinesAndPoints {
+        /// How many.
+        count: usize,
+        /// Line of the first, in text formats.
+        first_line: Option<usize>,
+    },
+    /// Records of one kind that the reader does not know.
+    UnknownRecord {
+        /// Their first word.
+        keyword: String,
+        /// How many.
+        count: usize,
+        /// Line of the first.
+        first_line: usize,
+    },
+    /// Records of yet more unknown kinds.
+    OtherUnknownRecords {
+        /// How many.
+        count: usize,
+    },
+    /// Bytes after the end of the model.
+    TrailingBytes {
+        /// How many.
+        count: usize,
+    },
+}
+
+impl fmt::Display for Notice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = |line: &Option<usize>| match line {
+            Some(line) => format!(", first on line {line}"),
+            None => String::new(),
+        };
+        match self {
+            Self::DegenerateFaces { count, first_line } => write!(
+                f,
+                "{} with fewer than three different corners left out{}",
+                counted(*count, "face"),
+                first(first_line)
+            ),
+            Self::LinesAndPoints { count, first_line } => write!(
+                f,
+                "{} of lines or points left out{}",
+                counted(*count, "record"),
+                first(first_line)
+            ),
+            Self::UnknownRecord { keyword, count, first_line } => write!(
+                f,
+                "unknown record `{keyword}` skipped ({}, first on line {first_line})",
+                counted(*count, "time")
+            ),
+            Self::OtherUnknownRecords { count } => {
+                write!(f, "{} of other unknown kinds skipped", counted(*count, "record"))
+            }
+            Self::TrailingBytes { count } => {
+                write!(f, "{} after the end of the model ignored", counted(*count, "byte"))
+            }
+        }
+    }
+}
+
+fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}

@@ -1,0 +1,152 @@
+//! Strokes as JSON, in image coordinates, for tests, scripts and other tools.
+//!
+//! Every number reads back as the very same `f64`. The camera can be read back with
+//! [`read_camera`].
+
+use std::io;
+
+use glam::{DAffine2, DVec3};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::strokes::{Drawing, Stroke};
+use crate::view::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
+
+/// The value of `format`.
+const FORMAT: &str = "hiddenline-strokes";
+
+/// The value of `version`.
+const VERSION: u32 = 1;
+
+/// All but the strokes.
+#[derive(Serialize)]
+struct Head {
+    format: &'static str,
+    version: u32,
+    camera: CameraRecord,
+    page_from_image: [f64; 6],
+}
+
+#[derive(Serialize, Deserialize)]
+struct CameraRecord {
+    projection: ProjectionName,
+    eye: [f64; 3],
+    target: [f64; 3],
+    up: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fov: Option<f64>,
+    near: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ProjectionName {
+    Perspective,
+    Orthographic,
+}
+
+#[derive(Serialize)]
+struct StrokeRecord<'a> {
+    kind: &'static str,
+    visible: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    qi: Option<u32>,
+    #[serde(serialize_with = "serialize_points")]
+    points: &'a [glam::DVec2],
+}
+
+fn serialize_points<S: serde::Serializer>(
+    points: &[glam::DVec2],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(points.iter().map(|p| p.to_array()))
+}
+
+/// Writes a drawing, one stroke a line.
+///
+/// `page_from_image` is written as the six numbers of SVG's `matrix(a b c d e f)`. O(points).
+///
+/// # Errors
+/// Those of `out`.
+pub fn write(
+    drawing: &Drawing,
+    camera: &Camera,
+    page_from_image: DAffine2,
+    out: &mut dyn io::Write,
+) -> io::Result<()> {
+    let head = Head {
+        format: FORMAT,
+        version: VERSION,
+        camera: CameraRecord::from(camera),
+        page_from_image: page_from_image.to_cols_array(),
+    };
+    // The strokes are the last member of the object that the head begins: they are written one by
+    // one, since all of them together would take as much memory again.
+    let head = serde_json::to_string(&head)?;
+    let opened = head.strip_suffix('}').unwrap_or(&head);
+    write!(out, "{opened},\"strokes\":[")?;
+    for (i, stroke) in drawing.iter().enumerate() {
+        out.write_all(if i == 0 { b"\n" } else { b",\n" })?;
+        serde_json::to_writer(&mut *out, &StrokeRecord::from(stroke))?;
+    }
+    writeln!(out, "\n]}}")
+}
+
+impl<'a> From<Stroke<'a>> for StrokeRecord<'a> {
+    fn from(stroke: Stroke<'a>) -> Self {
+        let visible = stroke.qi == 0;
+        let qi = (!visible).then_some(stroke.qi);
+        Self { kind: stroke.kind.name(), visible, qi, points: stroke.points }
+    }
+}
+
+impl From<&Camera> for CameraRecord {
+    fn from(camera: &Camera) -> Self {
+        let (projection, fov, near) = match camera.projection() {
+            Projection::Perspective { fov_deg, near } => {
+                (ProjectionName::Perspective, Some(fov_deg), near)
+            }
+            Projection::Orthographic => (ProjectionName::Orthographic, None, DEFAULT_NEAR),
+        };
+        Self {
+            projection,
+            eye: camera.eye().to_array(),
+            target: camera.target().to_array(),
+            up: camera.up().to_array(),
+            fov,
+            near: Some(near),
+        }
+    }
+}
+
+/// Why a text holds no camera.
+#[derive(Debug, Error)]
+pub enum ReadCameraError {
+    /// It is not JSON, or not a strokes file.
+    #[error("no camera of a strokes file: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The numbers make no camera.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+}
+
+/// Reads the camera of a strokes file; its strokes are passed over.
+///
+/// # Errors
+/// See [`ReadCameraError`].
+pub fn read_camera(text: &str) -> Result<Camera, ReadCameraError> {
+    #[derive(Deserialize)]
+    struct File {
+        camera: CameraRecord,
+    }
+    let record = serde_json::from_str::<File>(text)?.camera;
+    let projection = match record.projection {
+        ProjectionName::Perspective => Projection::Perspective {
+            fov_deg: record.fov.unwrap_or(DEFAULT_FOV_DEG),
+            near: record.near.unwrap_or(DEFAULT_NEAR),
+        },
+        ProjectionName::Orthographic => Projection::Orthographic,
+    };
+    let point = DVec3::from_array;
+    Ok(Camera::new(point(record.eye), point(record.target), point(record.up), projection)?)
+}

@@ -1,0 +1,205 @@
+//! SVG for plotters: true millimetres, one Inkscape layer a pen, nothing but strokes.
+//!
+//! The `svg` crate builds the document: root, title, metadata and layers. The strokes of a layer
+//! are put in as one prepared text, for two reasons: the crate's path numbers are `f32`, and a node
+//! for each of a million strokes takes twenty seconds and a gigabyte where the text takes less
+//! than one second. There are no transforms, clip paths, dash arrays, fills or texts, since
+//! plotting software ignores or misreads them.
+
+use std::io;
+
+use glam::DVec2;
+use svg::Document;
+use svg::node::element::{Element, Group, Title};
+use svg::node::{Blob, Node, Text};
+
+use crate::plot::{Layer, Plot};
+
+/// How a stroke is written.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum StrokeElement {
+    /// `<path>` with absolute M and L, and Z where it is closed.
+    #[default]
+    Path,
+    /// `<polyline>`; a closed one repeats its first point.
+    Polyline,
+}
+
+/// Writes `plot` as SVG. The same plot gives the same bytes.
+///
+/// Coordinates are millimetres with up to three decimals. Points that are equal after rounding to
+/// these are one; a stroke of which one point is left is left out. O(points).
+///
+/// # Errors
+/// Those of `out`.
+pub fn write(plot: &Plot, element: StrokeElement, out: &mut dyn io::Write) -> io::Result<()> {
+    let (width, height) = (millimetres(plot.width_mm), millimetres(plot.height_mm));
+    let mut document = Document::new()
+        .set("xmlns:inkscape", "http://www.inkscape.org/namespaces/inkscape")
+        .set("width", format!("{width}mm"))
+        .set("height", format!("{height}mm"))
+        .set("viewBox", format!("0 0 {width} {height}"))
+        .add(Title::new(printable(&plot.title)))
+        .add(metadata(&plot.source));
+    for layer in &plot.layers {
+        document.append(group(layer, element));
+    }
+    writeln!(out, "{document}")
+}
+
+fn metadata(source: &str) -> Element {
+    let mut format = Element::new("dc:format");
+    format.append(Text::new("image/svg+xml"));
+    let mut work = Element::new("cc:Work");
+    work.assign("rdf:about", "");
+    work.append(format);
+    if !source.is_empty() {
+        let mut command = Element::new("dc:source");
+        command.append(Text::new(printable(source)));
+        work.append(command);
+    }
+    let mut rdf = Element::new("rdf:RDF");
+    rdf.assign("xmlns:rdf", "http://www.w3.org/1999/02/22-rdf-syntax-ns#");
+    rdf.assign("xmlns:cc", "http://creativecommons.org/ns#");
+    rdf.assign("xmlns:dc", "http://purl.org/dc/elements/1.1/");
+    rdf.append(work);
+    let mut metadata = Element::new("metadata");
+    metadata.append(rdf);
+    metadata
+}
+
+fn group(layer: &Layer, element: StrokeElement) -> Group {
+    let mut group = Group::new()
+        .set("id", format!("pen{}-{}", layer.number, layer.name))
+        .set("inkscape:groupmode", "layer")
+        .set("inkscape:label", format!("{} {}", layer.number, layer.name))
+        .set("fill", "none")
+        .set("stroke", layer.pen.color.as_str())
+        .set("stroke-width", millimetres(layer.pen.width_mm))
+        .set("stroke-linecap", "round")
+        .set("stroke-linejoin", "round");
+    let strokes = strokes(layer, element);
+    if !strokes.is_empty() {
+        group.append(Blob::new(strokes));
+    }
+    group
+}
+
+/// All strokes of a layer, one a line.
+fn strokes(layer: &Layer, element: StrokeElement) -> String {
+    // A point takes about 16 characters, an element about 16 more.
+    let mut text = String::with_capacity(16 * (layer.lines.n_points() + layer.lines.len()));
+    let mut points: Vec<[i64; 2]> = Vec::new();
+    for line in layer.lines.iter() {
+        points.clear();
+        points.extend(line.iter().map(|&p| micrometres(p)));
+        points.dedup();
+        if points.len() < 2 {
+            continue;
+        }
+        let line_break = if text.is_empty() { "" } else { "\n" };
+        text.push_str(line_break);
+        match element {
+            StrokeElement::Path => push_path(&mut text, &points),
+            StrokeElement::Polyline => push_polyline(&mut text, &points),
+        }
+    }
+    text
+}
+
+fn push_path(text: &mut String, points: &[[i64; 2]]) {
+    // There and back again is not closed: Z would draw the way back only once more.
+    let closed = points.len() > 3 && points.first() == points.last();
+    let drawn = if closed { points.split_last().map_or(points, |(_, rest)| rest) } else { points };
+    text.push_str("<path d=\"");
+    for (i, point) in drawn.iter().enumerate() {
+        text.push(if i == 0 { 'M' } else { 'L' });
+        push_point(text, point, ' ');
+    }
+    text.push_str(if closed { "Z\"/>" } else { "\"/>" });
+}
+
+fn push_polyline(text: &mut String, points: &[[i64; 2]]) {
+    text.push_str("<polyline points=\"");
+    for (i, point) in points.iter().enumerate() {
+        if i > 0 {
+            text.push(' ');
+        }
+        push_point(text, point, ',');
+    }
+    text.push_str("\"/>");
+}
+
+fn push_point(text: &mut String, [x, y]: &[i64; 2], separator: char) {
+    push_thousandths(text, *x);
+    text.push(separator);
+    push_thousandths(text, *y);
+}
+
+fn micrometres(p: DVec2) -> [i64; 2] {
+    // `as` saturates; pages are at most 100 m, so nothing does.
+    [(p.x * 1000.0).round() as i64, (p.y * 1000.0).round() as i64]
+}
+
+/// A length in millimetres with up to three decimals.
+fn millimetres(value: f64) -> String {
+    let mut text = String::new();
+    push_thousandths(&mut text, (value * 1000.0).round() as i64);
+    text
+}
+
+/// Appends `value / 1000` without trailing zeros.
+fn push_thousandths(text: &mut String, value: i64) {
+    if value < 0 {
+        text.push('-');
+    }
+    let size = value.unsigned_abs();
+    push_integer(text, size / 1000);
+    let mut rest = size % 1000;
+    if rest > 0 {
+        text.push('.');
+        while rest > 0 {
+            text.push(digit(rest / 100));
+            rest = rest % 100 * 10;
+        }
+    }
+}
+
+fn push_integer(text: &mut String, value: u64) {
+    if value >= 10 {
+        push_integer(text, value / 10);
+    }
+    text.push(digit(value % 10));
+}
+
+fn digit(value: u64) -> char {
+    char::from(b'0' + (value % 10) as u8)
+}
+
+/// `text` without the control characters that XML cannot hold.
+fn printable(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() || c > '\u{fffd}' && c <= '\u{ffff}' { ' ' } else { c })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_no_trailing_zeros() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (-0.0004, "0"),
+            (0.001, "0.001"),
+            (0.3, "0.3"),
+            (-12.05, "-12.05"),
+            (297.0, "297"),
+            (1000.25, "1000.25"),
+        ] {
+            assert_eq!(millimetres(value), text);
+        }
+    }
+}
