@@ -332,7 +332,13 @@ pub(super) enum ViewSource {
 impl DrawArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, String> {
-        let Self { model, camera, lines, page, output } = self;
+        let Self {
+            model,
+            camera,
+            lines,
+            page,
+            output,
+        } = self;
         if model.models.iter().filter(|path| is_dash(path)).count() > 1 {
             return Err("standard input (-) can be read only once".into());
         }
@@ -383,8 +389,13 @@ fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Forma
         (Some(FormatName::Json), _) => Ok(Format::Json),
         (Some(FormatName::Png), _) => Ok(Format::Png),
         (None, Some(path)) => Format::from_path(path).ok_or_else(|| {
-            let known = Format::ALL.map(|format| format!(".{}", format.name())).join(", ");
-            format!("`{}` has none of the extensions {known}; give --format", path.display())
+            let known = Format::ALL
+                .map(|format| format!(".{}", format.name()))
+                .join(", ");
+            format!(
+                "`{}` has none of the extensions {known}; give --format",
+                path.display()
+            )
         }),
     }
 }
@@ -396,7 +407,10 @@ impl CameraArgs {
         }
         let standpoint = match (self.eye, self.view) {
             (Some(eye), _) => Standpoint::Eye(eye),
-            (None, Some(View(view))) => Standpoint::Named { view, distance: self.distance },
+            (None, Some(View(view))) => Standpoint::Named {
+                view,
+                distance: self.distance,
+            },
             (None, None) => Standpoint::Angles {
                 azimuth_deg: self.azimuth.unwrap_or(DEFAULT_AZIMUTH_DEG),
                 elevation_deg: self.elevation.unwrap_or(DEFAULT_ELEVATION_DEG),
@@ -454,7 +468,9 @@ impl PageArgs {
             },
             margin_mm: self.margin,
             placement: match (self.drawing_scale, self.fit_fov) {
-                (Some(scale), _) => Placement::Scale { mm_per_unit: scale * unit_mm },
+                (Some(scale), _) => Placement::Scale {
+                    mm_per_unit: scale * unit_mm,
+                },
                 (None, true) => Placement::FieldOfView,
                 (None, false) => Placement::Fit,
             },

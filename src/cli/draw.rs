@@ -29,9 +29,14 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         return Err("a picture is not for the terminal; give -o FILE".into());
     }
     if let Some(threads) = job.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global()?;
     }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
+    let mut stats = Stats {
+        threads: rayon::current_num_threads(),
+        ..Stats::default()
+    };
     let mut seconds = stats.seconds;
 
     let progress = Progress::new(job.quiet);
@@ -84,12 +89,14 @@ fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
     let mut repairs = Repairs::default();
     for path in &job.models {
         let model = read_file(path, job.input_format)?;
-        notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
-        add(&mut repairs, model.repairs);
+        notes
+            .warnings
+            .extend(model.warnings.iter().map(ToString::to_string));
+        repairs += model.repairs;
         meshes.push(model.mesh);
     }
     let (mesh, arranged) = job.arrangement.arrange(meshes)?;
-    add(&mut repairs, arranged);
+    repairs += arranged;
     if mesh.n_faces() == 0 {
         return Err("no face is left; give a smaller --weld".into());
     }
@@ -101,13 +108,6 @@ fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
         described(repairs)
     );
     Ok((mesh, notes))
-}
-
-fn add(repairs: &mut Repairs, more: Repairs) {
-    repairs.welded_vertices += more.welded_vertices;
-    repairs.unused_vertices += more.unused_vertices;
-    repairs.degenerate_faces += more.degenerate_faces;
-    repairs.repeated_corners += more.repeated_corners;
 }
 
 fn described(repairs: Repairs) -> String {
@@ -159,9 +159,16 @@ fn title(job: &Job) -> String {
         if path.as_os_str() == "-" {
             return "standard input".to_owned();
         }
-        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+        path.file_name()
+            .unwrap_or(path.as_os_str())
+            .to_string_lossy()
+            .into_owned()
     };
-    job.models.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
+    job.models
+        .iter()
+        .map(|path| name(path))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// The command as typed, but for what does not change the drawing: the same drawing has the same
@@ -175,7 +182,10 @@ fn source(arguments: impl Iterator<Item = OsString>) -> String {
                 arguments.next();
             }
             "-q" | "--quiet" | "--stats" => {}
-            other if ["-o", "-q", "--output=", "--threads="].iter().any(|p| other.starts_with(p)) => {}
+            other
+                if ["-o", "-q", "--output=", "--threads="]
+                    .iter()
+                    .any(|p| other.starts_with(p)) => {}
             other => {
                 command.push(' ');
                 command.push_str(&quoted(other));
@@ -227,13 +237,20 @@ fn report(job: &Job, notes: &Notes, page: &Page, PlacedPlot { plot, cropped }: &
     if *cropped && job.format != Format::Json {
         messages::warning("lines were cut off at the margins");
     }
-    let name = job.output.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
+    let name = job
+        .output
+        .as_deref()
+        .map_or("<stdout>".into(), Path::to_string_lossy);
     let pens: String = plot
         .layers
         .iter()
         .map(|layer| {
             let metres = layer.lines.length_mm() / 1000.0;
-            format!("  {} {} strokes {metres:.1} m", layer.name, layer.lines.len())
+            format!(
+                "  {} {} strokes {metres:.1} m",
+                layer.name,
+                layer.lines.len()
+            )
         })
         .collect();
     messages::plain(format_args!("{name}  {}{pens}", page.paper.description()));

@@ -45,7 +45,9 @@ pub(crate) fn run() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Draw(args) => match args.job() {
             Ok(job) => draw::run(&job),
-            Err(usage) => Cli::command().error(clap::error::ErrorKind::ValueValidation, usage).exit(),
+            Err(usage) => Cli::command()
+                .error(clap::error::ErrorKind::ValueValidation, usage)
+                .exit(),
         },
         Command::Completions { shell } => {
             let mut script = Vec::new();
@@ -83,7 +85,10 @@ fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
 fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
     let mut cause = Some(error);
     while let Some(error) = cause {
-        if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
+        if error
+            .downcast_ref::<io::Error>()
+            .is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
+        {
             return true;
         }
         cause = error.source();

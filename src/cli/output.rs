@@ -26,7 +26,10 @@ pub(super) fn write_to_file<E: From<io::Error>>(
 ) -> Result<(), E> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let existing = fs::metadata(&target).ok();
-    if existing.as_ref().is_some_and(|metadata| !metadata.is_file() && !metadata.is_dir()) {
+    if existing
+        .as_ref()
+        .is_some_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+    {
         let mut out = BufWriter::new(fs::File::create(&target)?);
         write(&mut out)?;
         return Ok(out.flush()?);

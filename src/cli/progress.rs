@@ -33,7 +33,10 @@ impl Progress {
                 late.enable_steady_tick(Duration::from_millis(100));
             }
         });
-        Self { bar, waiting: Some((done, thread)) }
+        Self {
+            bar,
+            waiting: Some((done, thread)),
+        }
     }
 
     /// Says what is being done now.
