@@ -60,8 +60,15 @@ fn a_drawing_goes_to_the_file_and_a_brief_line_to_stderr() {
     assert!(stderr.contains("cube.svg  A4 "), "{stderr}");
     let svg = fs::read_to_string(folder.join("cube.svg")).expect("written");
     let document = roxmltree::Document::parse(&svg).expect("valid XML");
-    assert!(document.descendants().any(|node| node.tag_name().name() == "path"));
-    assert!(svg.contains("<dc:source>hiddenline draw cube.obj</dc:source>"), "{svg}");
+    assert!(
+        document
+            .descendants()
+            .any(|node| node.tag_name().name() == "path")
+    );
+    assert!(
+        svg.contains("<dc:source>hiddenline draw cube.obj</dc:source>"),
+        "{svg}"
+    );
 }
 
 #[test]
@@ -84,7 +91,12 @@ fn dash_is_standard_input() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");
-    child.stdin.take().expect("piped").write_all(CUBE.as_bytes()).expect("read");
+    child
+        .stdin
+        .take()
+        .expect("piped")
+        .write_all(CUBE.as_bytes())
+        .expect("read");
     let output = child.wait_with_output().expect("ends");
     assert!(output.status.success());
     assert!(text(&output.stdout).contains("<title>standard input</title>"));
@@ -93,7 +105,11 @@ fn dash_is_standard_input() {
 #[test]
 fn the_extension_gives_the_format() {
     let (_keep, folder) = with_cube();
-    for (name, start) in [("a.svg", &b"<svg"[..]), ("a.PNG", b"\x89PNG"), ("a.json", b"{\"format\"")] {
+    for (name, start) in [
+        ("a.svg", &b"<svg"[..]),
+        ("a.PNG", b"\x89PNG"),
+        ("a.json", b"{\"format\""),
+    ] {
         let output = hiddenline(&folder, &["draw", "cube.obj", "-o", name]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let bytes = fs::read(folder.join(name)).expect("written");
@@ -111,7 +127,11 @@ fn an_unknown_extension_is_bad_usage() {
 #[test]
 fn an_unknown_option_is_bad_usage() {
     let (_keep, folder) = with_cube();
-    assert_fails(&hiddenline(&folder, &["draw", "cube.obj", "--sideways"]), 2, "--sideways");
+    assert_fails(
+        &hiddenline(&folder, &["draw", "cube.obj", "--sideways"]),
+        2,
+        "--sideways",
+    );
 }
 
 #[test]
@@ -127,15 +147,20 @@ fn a_broken_model_leaves_the_old_drawing_as_it_was() {
     fs::write(folder.join("old.svg"), "old").expect("written");
     let output = hiddenline(&folder, &["draw", "bad.obj", "-o", "old.svg"]);
     assert_fails(&output, 1, "bad.obj:2");
-    assert_eq!(fs::read_to_string(folder.join("old.svg")).expect("there"), "old");
+    assert_eq!(
+        fs::read_to_string(folder.join("old.svg")).expect("there"),
+        "old"
+    );
     assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 3);
 }
 
 #[test]
 fn a_failure_while_writing_leaves_nothing_behind() {
     let (_keep, folder) = with_cube();
-    let output =
-        hiddenline(&folder, &["draw", "cube.obj", "-o", "cube.png", "--dpi", "1000000"]);
+    let output = hiddenline(
+        &folder,
+        &["draw", "cube.obj", "-o", "cube.png", "--dpi", "1000000"],
+    );
     assert_fails(&output, 1, "--dpi");
     assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
 }
@@ -153,15 +178,34 @@ fn negative_eyes_can_be_written_both_ways() {
     let apart = strokes_of(&["--eye", "-3,2,1"]);
     assert_eq!(joined, apart);
     assert_eq!(joined["camera"]["eye"], serde_json::json!([-3.0, 2.0, 1.0]));
-    assert_eq!(joined["camera"]["target"], serde_json::json!([0.0, 0.0, 0.0]));
+    assert_eq!(
+        joined["camera"]["target"],
+        serde_json::json!([0.0, 0.0, 0.0])
+    );
 }
 
 #[test]
 fn a_drawing_can_take_the_camera_of_another() {
     let (_keep, folder) = with_cube();
-    let first = ["draw", "cube.obj", "--eye", "3,2,1", "--fov", "50", "-o", "first.json"];
+    let first = [
+        "draw",
+        "cube.obj",
+        "--eye",
+        "3,2,1",
+        "--fov",
+        "50",
+        "-o",
+        "first.json",
+    ];
     assert!(hiddenline(&folder, &first).status.success());
-    let second = ["draw", "cube.obj", "--camera", "first.json", "-o", "second.json"];
+    let second = [
+        "draw",
+        "cube.obj",
+        "--camera",
+        "first.json",
+        "-o",
+        "second.json",
+    ];
     assert!(hiddenline(&folder, &second).status.success());
     let read = |name| fs::read_to_string(folder.join(name)).expect("written");
     assert_eq!(read("first.json"), read("second.json"));
@@ -170,13 +214,19 @@ fn a_drawing_can_take_the_camera_of_another() {
 #[test]
 fn a_camera_from_a_file_goes_with_no_other_camera() {
     let (_keep, folder) = with_cube();
-    let output = hiddenline(&folder, &["draw", "cube.obj", "--camera", "x", "--eye", "1,2,3"]);
+    let output = hiddenline(
+        &folder,
+        &["draw", "cube.obj", "--camera", "x", "--eye", "1,2,3"],
+    );
     assert_fails(&output, 2, "cannot be used with");
 }
 
 #[test]
 fn named_views_are_orthographic_unless_asked() {
-    assert_eq!(strokes_of(&["--view", "top"])["camera"]["projection"], "orthographic");
+    assert_eq!(
+        strokes_of(&["--view", "top"])["camera"]["projection"],
+        "orthographic"
+    );
     let asked = strokes_of(&["--view", "top", "--projection", "perspective"]);
     assert_eq!(asked["camera"]["projection"], "perspective");
     assert_eq!(asked["camera"]["up"], serde_json::json!([0.0, 1.0, 0.0]));
@@ -185,28 +235,61 @@ fn named_views_are_orthographic_unless_asked() {
 #[test]
 fn up_along_the_view_is_an_error_when_given() {
     let (_keep, folder) = with_cube();
-    let output = hiddenline(&folder, &["draw", "cube.obj", "--eye", "0,0,5", "--up", "0,0,1"]);
+    let output = hiddenline(
+        &folder,
+        &["draw", "cube.obj", "--eye", "0,0,5", "--up", "0,0,1"],
+    );
     assert_fails(&output, 1, "--up");
 }
 
 #[test]
 fn stats_are_the_last_line_with_all_keys() {
     let (_keep, folder) = with_cube();
-    let arguments = ["draw", "cube.obj", "-o", "cube.svg", "--stats", "--threads", "1"];
+    let arguments = [
+        "draw",
+        "cube.obj",
+        "-o",
+        "cube.svg",
+        "--stats",
+        "--threads",
+        "1",
+    ];
     let stderr = text(&hiddenline(&folder, &arguments).stderr);
     let last = stderr.lines().last().expect("a line");
     let stats: serde_json::Value = serde_json::from_str(last).expect("JSON");
-    assert_eq!((&stats["threads"], &stats["vertices"]), (&1.into(), &8.into()));
+    assert_eq!(
+        (&stats["threads"], &stats["vertices"]),
+        (&1.into(), &8.into())
+    );
     assert_eq!((&stats["faces"], &stats["edges"]), (&6.into(), &12.into()));
-    for key in ["engine", "triangles", "drawn_edges", "strokes", "points", "peak_bytes"] {
+    for key in [
+        "engine",
+        "triangles",
+        "drawn_edges",
+        "strokes",
+        "points",
+        "peak_bytes",
+    ] {
         assert!(stats.get(key).is_some(), "{key}");
     }
-    for key in
-        ["read", "topology", "classify", "visibility", "strokes", "order", "write", "total"]
-    {
+    for key in [
+        "read",
+        "topology",
+        "classify",
+        "visibility",
+        "strokes",
+        "order",
+        "write",
+        "total",
+    ] {
         assert!(stats["seconds"][key].is_number(), "{key}");
     }
-    for key in ["candidate_pairs", "exact_predicates", "contour_crossings", "fallback_edges"] {
+    for key in [
+        "candidate_pairs",
+        "exact_predicates",
+        "contour_crossings",
+        "fallback_edges",
+    ] {
         assert!(stats["counts"][key].is_number(), "{key}");
     }
 }
@@ -234,7 +317,10 @@ fn any_number_of_threads_writes_the_same_bytes() {
 #[test]
 fn a_model_that_is_not_in_view_gives_an_empty_drawing_and_a_warning() {
     let (_keep, folder) = with_cube();
-    let output = hiddenline(&folder, &["draw", "cube.obj", "--eye", "9,0,0", "--target", "20,0,0"]);
+    let output = hiddenline(
+        &folder,
+        &["draw", "cube.obj", "--eye", "9,0,0", "--target", "20,0,0"],
+    );
     assert_eq!(output.status.code(), Some(0));
     assert!(text(&output.stderr).contains("the drawing is empty"));
     let svg = text(&output.stdout);
@@ -254,16 +340,30 @@ fn models_are_drawn_together() {
 #[test]
 fn nothing_is_drawn_outside_the_margins() {
     let (_keep, folder) = with_cube();
-    let arguments = ["draw", "cube.obj", "--drawing-scale", "200:1", "--page", "100x80", "--svg-element", "polyline"];
+    let arguments = [
+        "draw",
+        "cube.obj",
+        "--drawing-scale",
+        "200:1",
+        "--page",
+        "100x80",
+        "--svg-element",
+        "polyline",
+    ];
     let output = hiddenline(&folder, &arguments);
     assert!(text(&output.stderr).contains("cut off at the margins"));
     let svg = text(&output.stdout);
     let document = roxmltree::Document::parse(&svg).expect("valid XML");
-    let points = document.descendants().filter_map(|node| node.attribute("points"));
+    let points = document
+        .descendants()
+        .filter_map(|node| node.attribute("points"));
     for pair in points.flat_map(str::split_whitespace) {
         let (x, y) = pair.split_once(',').expect("a pair");
         let (x, y): (f64, f64) = (x.parse().expect("x"), y.parse().expect("y"));
-        assert!((10.0..=90.0).contains(&x) && (10.0..=70.0).contains(&y), "{pair}");
+        assert!(
+            (10.0..=90.0).contains(&x) && (10.0..=70.0).contains(&y),
+            "{pair}"
+        );
     }
 }
 

@@ -4,7 +4,10 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use hiddenline::framing::{Framing, FramingError, NamedView, ProjectionKind, Standpoint};
 use hiddenline::view::{Camera, CameraError, Projection};
 
-const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 30.0, near: 1e-6 };
+const PERSPECTIVE: Projection = Projection::Perspective {
+    fov_deg: 30.0,
+    near: 1e-6,
+};
 
 /// Points scattered in front of the observer and around, none of them special.
 fn some_points() -> Vec<DVec3> {
@@ -19,7 +22,10 @@ fn some_points() -> Vec<DVec3> {
 /// Checks that `theirs` is `ours` times a positive factor, mirrored if `mirror`.
 fn assert_similar(ours: DVec2, theirs: DVec2, factor: f64, mirror: bool) {
     let expected = dvec2(if mirror { -ours.x } else { ours.x }, ours.y) * factor;
-    assert!(expected.distance(theirs) <= 1e-12 * factor, "{expected} is not {theirs}");
+    assert!(
+        expected.distance(theirs) <= 1e-12 * factor,
+        "{expected} is not {theirs}"
+    );
 }
 
 /// `P1 = [1 0 0 0; 0 1 0 0; 0 0 1 0; 0 0 −1/d 0]`: center in the origin, image plane z = −d.
@@ -69,8 +75,16 @@ fn projection_onto_the_plane_through_the_origin_is_the_camera() {
 const BOUNDS: (DVec3, DVec3) = (dvec3(0.1, 0.2, 0.3), dvec3(1.7, 2.3, 0.9));
 
 fn named(view: NamedView) -> Camera {
-    let standpoint = Standpoint::Named { view, distance: None };
-    Framing { standpoint, ..Framing::default() }.camera(BOUNDS).expect("a good camera")
+    let standpoint = Standpoint::Named {
+        view,
+        distance: None,
+    };
+    Framing {
+        standpoint,
+        ..Framing::default()
+    }
+    .camera(BOUNDS)
+    .expect("a good camera")
 }
 
 #[test]
@@ -100,9 +114,15 @@ fn isometric_foreshortens_all_axes_exactly_alike() {
 
 #[test]
 fn diagonal_azimuth_is_exactly_diagonal() {
-    let standpoint =
-        Standpoint::Angles { azimuth_deg: 135.0, elevation_deg: 20.0, distance: Some(7.3) };
-    let framing = Framing { standpoint, ..Framing::default() };
+    let standpoint = Standpoint::Angles {
+        azimuth_deg: 135.0,
+        elevation_deg: 20.0,
+        distance: Some(7.3),
+    };
+    let framing = Framing {
+        standpoint,
+        ..Framing::default()
+    };
     let forward = framing.camera(BOUNDS).expect("a good camera").forward();
     assert_eq!(forward.x, -forward.y);
     assert!((forward.length() - 7.3).abs() < 1e-12);
@@ -110,20 +130,30 @@ fn diagonal_azimuth_is_exactly_diagonal() {
 
 #[test]
 fn eye_is_where_the_angles_say() {
-    let standpoint =
-        Standpoint::Angles { azimuth_deg: 30.0, elevation_deg: 25.0, distance: Some(2.0) };
+    let standpoint = Standpoint::Angles {
+        azimuth_deg: 30.0,
+        elevation_deg: 25.0,
+        distance: Some(2.0),
+    };
     let target = Some(dvec3(1.0, 2.0, 3.0));
-    let framing = Framing { standpoint, target, ..Framing::default() };
+    let framing = Framing {
+        standpoint,
+        target,
+        ..Framing::default()
+    };
     let eye = framing.camera(BOUNDS).expect("a good camera").eye();
     let (az, el) = (30_f64.to_radians(), 25_f64.to_radians());
-    let expected = dvec3(1.0, 2.0, 3.0)
-        + 2.0 * dvec3(az.sin() * el.cos(), -az.cos() * el.cos(), el.sin());
+    let expected =
+        dvec3(1.0, 2.0, 3.0) + 2.0 * dvec3(az.sin() * el.cos(), -az.cos() * el.cos(), el.sin());
     assert!(eye.distance(expected) < 1e-14, "{eye}");
 }
 
 #[test]
 fn automatic_target_is_the_middle_of_the_box() {
-    let target = Framing::default().camera(BOUNDS).expect("a good camera").target();
+    let target = Framing::default()
+        .camera(BOUNDS)
+        .expect("a good camera")
+        .target();
     assert!(target.distance(dvec3(0.9, 1.25, 0.6)) < 1e-5, "{target}");
 }
 
@@ -137,10 +167,20 @@ fn automatic_distance_shows_the_whole_box() {
             elevation_deg: 25.0,
             distance: None,
         };
-        let camera = Framing { standpoint, ..Framing::default() }.camera(BOUNDS);
+        let camera = Framing {
+            standpoint,
+            ..Framing::default()
+        }
+        .camera(BOUNDS);
         let camera = camera.expect("a good camera");
         for corner in 0..8 {
-            let pick = |bit: u32, axis: usize| if corner >> bit & 1 == 0 { low[axis] } else { high[axis] };
+            let pick = |bit: u32, axis: usize| {
+                if corner >> bit & 1 == 0 {
+                    low[axis]
+                } else {
+                    high[axis]
+                }
+            };
             let image = camera.image(dvec3(pick(0, 0), pick(1, 1), pick(2, 2)));
             assert!(image.abs().max_element() <= edge, "{azimuth}: {image}");
         }
@@ -151,16 +191,37 @@ fn automatic_distance_shows_the_whole_box() {
 fn up_along_the_view_is_an_error_when_given_and_y_by_default() {
     let standpoint = Standpoint::Eye(dvec3(0.5, 0.5, 9.0));
     let target = Some(dvec3(0.5, 0.5, 0.0));
-    let framing = Framing { standpoint, target, ..Framing::default() };
-    assert_eq!(framing.camera(BOUNDS).map(|camera| camera.up()), Ok(DVec3::Y));
-    let given = Framing { up: Some(DVec3::Z), ..framing };
-    assert_eq!(given.camera(BOUNDS), Err(FramingError::Camera(CameraError::UpParallel)));
+    let framing = Framing {
+        standpoint,
+        target,
+        ..Framing::default()
+    };
+    assert_eq!(
+        framing.camera(BOUNDS).map(|camera| camera.up()),
+        Ok(DVec3::Y)
+    );
+    let given = Framing {
+        up: Some(DVec3::Z),
+        ..framing
+    };
+    assert_eq!(
+        given.camera(BOUNDS),
+        Err(FramingError::Camera(CameraError::UpParallel))
+    );
 }
 
 #[test]
 fn named_views_can_be_perspective() {
-    let standpoint = Standpoint::Named { view: NamedView::Isometric, distance: None };
+    let standpoint = Standpoint::Named {
+        view: NamedView::Isometric,
+        distance: None,
+    };
     let projection = Some(ProjectionKind::Perspective);
-    let camera = Framing { standpoint, projection, ..Framing::default() }.camera(BOUNDS);
+    let camera = Framing {
+        standpoint,
+        projection,
+        ..Framing::default()
+    }
+    .camera(BOUNDS);
     assert_eq!(camera.map(|camera| camera.projection()), Ok(PERSPECTIVE));
 }
