@@ -1,7 +1,6 @@
 //! Models put together: turned upright, scaled, rotated, merged into one mesh, welded.
 
 use glam::{DMat3, DVec3};
-use rustc_hash::FxHashMap;
 
 use crate::framing::sin_cos_deg;
 use crate::mesh::{Mesh, MeshError, Part, PolygonSoup, Repairs};
@@ -25,8 +24,8 @@ pub struct Arrangement {
     pub scale: f64,
     /// Angles in degrees around x, then y, then z, each counter-clockwise seen from its tip.
     pub rotate_deg: DVec3,
-    /// Vertices closer together than this, in model units after scaling, become one; 0 for only
-    /// those that are equal.
+    /// Vertices closer together than this, in model units after scaling, become one; see
+    /// [`Mesh::weld`].
     pub weld_distance: f64,
 }
 
@@ -42,7 +41,8 @@ impl Arrangement {
     /// The whole turn is one matrix, applied once; turns by quarters are exact.
     ///
     /// # Errors
-    /// A coordinate becomes infinite, or the meshes together are too large for one.
+    /// A coordinate becomes infinite, the meshes together are too large for one, or the weld
+    /// distance is negative.
     pub fn arrange(&self, mut meshes: Vec<Mesh>) -> Result<(Mesh, Repairs), MeshError> {
         if meshes.len() == 1 && *self == Self::default() {
             return Ok((meshes.pop().unwrap_or_default(), Repairs::default()));
@@ -58,19 +58,9 @@ impl Arrangement {
                 *position = matrix * *position;
             }
         }
-        let mut n_welded = 0;
-        if self.weld_distance > 0.0 && soup.positions.iter().all(|p| p.is_finite()) {
-            let nearby = first_nearby(&soup.positions, self.weld_distance);
-            n_welded = nearby.iter().enumerate().filter(|&(i, &n)| i as u32 != n).count();
-            for corner in &mut soup.corners {
-                if let Some(&vertex) = nearby.get(*corner as usize) {
-                    *corner = vertex;
-                }
-            }
-        }
         let (mesh, mut repairs) = Mesh::new(soup)?;
-        repairs.welded_vertices += n_welded;
-        repairs.unused_vertices = repairs.unused_vertices.saturating_sub(n_welded);
+        let (mesh, welded) = mesh.weld(self.weld_distance)?;
+        repairs += welded;
         Ok((mesh, repairs))
     }
 
@@ -116,39 +106,6 @@ fn append(soup: &mut PolygonSoup, mesh: &Mesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// For each position the first one kept that is closer than `distance`, or itself.
-///
-/// Positions are taken in order and kept unless one that was kept before is near, so chains of
-/// near positions do not pull each other together over more than the distance. A grid of cells of
-/// that size leaves 27 cells to look into. O(positions).
-fn first_nearby(positions: &[DVec3], distance: f64) -> Vec<u32> {
-    let cell_of = |p: DVec3| (p / distance).floor().to_array().map(|x| x as i64);
-    let mut kept: FxHashMap<[i64; 3], Vec<u32>> = FxHashMap::default();
-    let mut nearby = Vec::with_capacity(positions.len());
-    for (i, &p) in positions.iter().enumerate() {
-        let [x, y, z] = cell_of(p);
-        let mut first = i as u32;
-        for dx in -1..=1 {
-            for dy in -1..=1 {
-                for dz in -1..=1 {
-                    let cell = [x.saturating_add(dx), y.saturating_add(dy), z.saturating_add(dz)];
-                    for &other in kept.get(&cell).map_or(&[][..], Vec::as_slice) {
-                        let q = positions.get(other as usize).copied().unwrap_or(p);
-                        if other < first && q.distance(p) < distance {
-                            first = other;
-                        }
-                    }
-                }
-            }
-        }
-        if first == i as u32 {
-            kept.entry([x, y, z]).or_default().push(first);
-        }
-        nearby.push(first);
-    }
-    nearby
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -185,19 +142,5 @@ mod tests {
         assert_eq!((mesh.n_faces(), mesh.positions().len()), (2, 5));
         assert_eq!(repairs.welded_vertices, 1);
         assert_eq!(mesh.face_parts(), [0, 1]);
-    }
-
-    #[test]
-    fn welding_joins_what_is_closer_than_the_distance() {
-        let arrangement = |weld_distance| Arrangement { weld_distance, ..Arrangement::default() };
-        let meshes = || vec![triangle(DVec3::ZERO), triangle(dvec3(1.0625, 0.0, 0.0))];
-        let vertices = |weld| {
-            arrangement(weld)
-                .arrange(meshes())
-                .map(|(m, r)| (m.positions().len(), r.welded_vertices))
-        };
-        assert_eq!(vertices(0.0), Ok((6, 0)));
-        assert_eq!(vertices(0.0625), Ok((6, 0)));
-        assert_eq!(vertices(0.07), Ok((5, 1)));
     }
 }

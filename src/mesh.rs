@@ -88,6 +88,15 @@ pub struct Repairs {
     pub repeated_corners: usize,
 }
 
+impl std::ops::AddAssign for Repairs {
+    fn add_assign(&mut self, more: Self) {
+        self.welded_vertices += more.welded_vertices;
+        self.unused_vertices += more.unused_vertices;
+        self.degenerate_faces += more.degenerate_faces;
+        self.repeated_corners += more.repeated_corners;
+    }
+}
+
 /// Why a [`PolygonSoup`] is no mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum MeshError {

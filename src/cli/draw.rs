@@ -89,11 +89,11 @@ fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
     for path in &job.models {
         let model = read_file(path, job.input_format)?;
         notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
-        add(&mut repairs, model.repairs);
+        repairs += model.repairs;
         meshes.push(model.mesh);
     }
     let (mesh, arranged) = job.arrangement.arrange(meshes)?;
-    add(&mut repairs, arranged);
+    repairs += arranged;
     if mesh.n_faces() == 0 {
         return Err("no face is left; give a smaller --weld".into());
     }
@@ -105,13 +105,6 @@ fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
         described(repairs)
     );
     Ok((mesh, notes))
-}
-
-fn add(repairs: &mut Repairs, more: Repairs) {
-    repairs.welded_vertices += more.welded_vertices;
-    repairs.unused_vertices += more.unused_vertices;
-    repairs.degenerate_faces += more.degenerate_faces;
-    repairs.repeated_corners += more.repeated_corners;
 }
 
 fn described(repairs: Repairs) -> String {

@@ -8,9 +8,10 @@ mod progress;
 mod values;
 
 use std::error::Error;
-use std::io::{self, ErrorKind};
+use std::io;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -45,9 +46,7 @@ pub(crate) fn run() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Draw(args) => match args.job() {
             Ok(job) => draw::run(&job),
-            Err(usage) => {
-                Cli::command().error(clap::error::ErrorKind::ValueValidation, usage).exit()
-            }
+            Err(message) => bad_usage("draw", message),
         },
         Command::Completions { shell } => {
             let mut script = Vec::new();
@@ -64,6 +63,14 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Says what is wrong with the arguments of a command, and ends the program as clap does.
+fn bad_usage(name: &str, message: String) -> ! {
+    let mut command = Cli::command();
+    command.build();
+    let mut command = command.find_subcommand(name).cloned().unwrap_or_else(Cli::command);
+    command.error(ErrorKind::ValueValidation, message).exit()
 }
 
 fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
@@ -85,7 +92,8 @@ fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
 fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
     let mut cause = Some(error);
     while let Some(error) = cause {
-        if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe) {
+        if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+        {
             return true;
         }
         cause = error.source();

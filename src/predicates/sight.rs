@@ -27,8 +27,6 @@ pub struct Sight<'a> {
     viewpoint: Viewpoint,
     forward: DVec3,
     near: f64,
-    /// `position − eye` in perspective, the position itself otherwise.
-    relative: Vec<DVec3>,
     in_window: bool,
     n_exact: AtomicU64,
 }
@@ -77,10 +75,6 @@ impl<'a> Sight<'a> {
             Projection::Perspective { near, .. } => (Viewpoint::Eye(camera.eye()), near),
             Projection::Orthographic => (Viewpoint::Direction(forward), 0.0),
         };
-        let relative = match viewpoint {
-            Viewpoint::Eye(eye) => positions.par_iter().map(|&p| p - eye).collect(),
-            Viewpoint::Direction(_) => positions.to_vec(),
-        };
         let own = [forward, camera.eye()];
         let numbers = positions.par_iter().chain(own.par_iter());
         let range = numbers
@@ -88,15 +82,7 @@ impl<'a> Sight<'a> {
             .reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let in_window =
             range.is_none_or(|(low, high)| low >= FILTER_WINDOW.0 && high <= FILTER_WINDOW.1);
-        Self {
-            positions,
-            viewpoint,
-            forward,
-            near,
-            relative,
-            in_window,
-            n_exact: AtomicU64::new(0),
-        }
+        Self { positions, viewpoint, forward, near, in_window, n_exact: AtomicU64::new(0) }
     }
 
     /// The points.
@@ -124,11 +110,6 @@ impl<'a> Sight<'a> {
         self.positions[vertex as usize]
     }
 
-    #[inline]
-    fn relative(&self, vertex: u32) -> DVec3 {
-        self.relative[vertex as usize]
-    }
-
     /// An estimate's sign, unless the numbers are outside the window in which its bound holds.
     #[inline]
     fn decided(&self, estimate: Estimate) -> Option<Sign> {
@@ -138,12 +119,18 @@ impl<'a> Sight<'a> {
     /// The plane of sight through two vertices: its value at `x` is `turn(p, q, x)`.
     #[inline]
     pub fn sight_plane(&self, p: u32, q: u32) -> PlaneThrough {
+        // The differences to a corner keep the error small where the points are near each other,
+        // however far the eye is.
+        let base = self.position(p);
+        PlaneThrough::new(self.sight_line(p), self.position(q) - base, base)
+    }
+
+    /// The direction of sight through a vertex, away from the observer.
+    #[inline]
+    fn sight_line(&self, vertex: u32) -> DVec3 {
         match self.viewpoint {
-            Viewpoint::Eye(_) => PlaneThrough::new(self.relative(p), self.relative(q), DVec3::ZERO),
-            Viewpoint::Direction(forward) => {
-                let base = self.position(p);
-                PlaneThrough::new(forward, self.position(q) - base, base)
-            }
+            Viewpoint::Eye(eye) => self.position(vertex) - eye,
+            Viewpoint::Direction(forward) => forward,
         }
     }
 
@@ -162,7 +149,7 @@ impl<'a> Sight<'a> {
         if x == p || x == q {
             return (Estimate::ZERO, Sign::Zero);
         }
-        let estimate = plane.negated_at(self.relative(x));
+        let estimate = plane.negated_at(self.position(x));
         match self.decided(estimate) {
             Some(sign) => (estimate, sign),
             None => {
@@ -218,7 +205,7 @@ impl<'a> Sight<'a> {
         let mut sum = Estimate::ZERO;
         for pair in rest.windows(2) {
             let plane = self.sight_plane(first, pair[0]);
-            let term = plane.negated_at(self.relative(pair[1]));
+            let term = plane.negated_at(self.position(pair[1]));
             sum.value += term.value;
             sum.error += term.error + sum.value.abs() * f64::EPSILON;
         }
@@ -235,11 +222,7 @@ impl<'a> Sight<'a> {
 
     /// Whether the images of two vertices are the same point.
     pub fn same_image(&self, a: u32, b: u32) -> bool {
-        let (p, q) = (self.relative(a), self.relative(b));
-        let plane = match self.viewpoint {
-            Viewpoint::Eye(_) => PlaneThrough::new(p, q, DVec3::ZERO),
-            Viewpoint::Direction(forward) => PlaneThrough::new(forward, q - p, DVec3::ZERO),
-        };
+        let plane = self.sight_plane(a, b);
         let differs = plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any();
         if self.in_window && differs {
             return false;
@@ -263,10 +246,10 @@ impl<'a> Sight<'a> {
     /// Without a near plane every point is kept. The estimate has the sign that is returned.
     #[inline]
     pub fn near_distance(&self, x: u32) -> (Estimate, Sign) {
-        if !self.has_near_plane() {
+        let Viewpoint::Eye(eye) = self.viewpoint else {
             return (Estimate { value: 1.0, error: 0.0 }, Sign::Positive);
-        }
-        let d = self.relative(x);
+        };
+        let d = self.position(x) - eye;
         let limit = self.near * self.forward.length_squared();
         let estimate = Estimate {
             value: d.dot(self.forward) - limit,

@@ -1,3 +1,6 @@
 //! All integration tests, in one binary.
 
+mod cli;
 mod closed_forms;
+mod views;
+mod writers;
