@@ -82,6 +82,12 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     let mut skipped = Skipped::default();
     let mut largest = Largest::default();
     while !records.at_end() {
+        if copy_plain_vertex(&mut records, &mut out)
+            || copy_plain_face(&mut records, &mut out, &mut largest, &mut naming)
+        {
+            records.finish();
+            continue;
+        }
         let line = records.line;
         match records.word(true) {
             None => {}
@@ -112,6 +118,124 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     }
     skipped.report(out.n_lines, &mut out.notices);
     Ok(out)
+}
+
+/// Copies a vertex of three numbers without exponents, alone on its line: nearly all are such.
+/// False, with nothing changed, when the line is anything else.
+fn copy_plain_vertex(records: &mut Records<'_>, out: &mut Filtered) -> bool {
+    const MOST_DIGITS: usize = 300;
+    let rest = &records.bytes[records.at..];
+    if !rest.starts_with(b"v ") {
+        return false;
+    }
+    let mut at = 1;
+    for _ in 0..3 {
+        if rest.get(at) != Some(&b' ') {
+            return false;
+        }
+        while rest.get(at) == Some(&b' ') {
+            at += 1;
+        }
+        at += usize::from(rest.get(at) == Some(&b'-'));
+        let start = at;
+        let mut n_points = 0;
+        while let Some(&byte @ (b'0'..=b'9' | b'.')) = rest.get(at) {
+            n_points += usize::from(byte == b'.');
+            at += 1;
+        }
+        if n_points > 1 || at - start == n_points || at - start > MOST_DIGITS {
+            return false;
+        }
+    }
+    if rest.get(at).is_some_and(|&byte| !is_line_end(byte)) {
+        return false;
+    }
+    out.text.extend_from_slice(&rest[..at]);
+    out.text.push(b'\n');
+    out.n_vertices += 1;
+    records.at += at;
+    true
+}
+
+/// Copies a face whose line holds nothing but vertex numbers above zero, each perhaps with those of
+/// its texture coordinates and normal. False, with nothing changed, when the line is anything else.
+fn copy_plain_face(
+    records: &mut Records<'_>,
+    out: &mut Filtered,
+    largest: &mut Largest,
+    naming: &mut Naming,
+) -> bool {
+    const MOST_DIGITS: usize = 10;
+    let rest = &records.bytes[records.at..];
+    if !rest.starts_with(b"f ") {
+        return false;
+    }
+    let text_before = out.text.len();
+    out.text.push(b'f');
+    let mut line_largest = (0, 0, 0);
+    let mut n_corners = 0;
+    let mut at = 1;
+    loop {
+        while rest.get(at) == Some(&b' ') {
+            at += 1;
+        }
+        if rest.get(at).is_none_or(|&byte| is_line_end(byte)) {
+            break;
+        }
+        let start = at;
+        let mut index = 0;
+        while let Some(&digit @ b'0'..=b'9') = rest.get(at) {
+            index = (10 * index).min(u64::MAX / 20) + u64::from(digit - b'0');
+            at += 1;
+        }
+        let end = at;
+        while let Some(b'0'..=b'9' | b'/') = rest.get(at)
+            && rest[end] == b'/'
+        {
+            at += 1;
+        }
+        let is_plain = index > 0
+            && end - start <= MOST_DIGITS
+            && rest
+                .get(at)
+                .is_none_or(|&byte| byte == b' ' || is_line_end(byte));
+        if !is_plain {
+            break;
+        }
+        if index > line_largest.0 {
+            line_largest = (index, start, end);
+        }
+        out.text.push(b' ');
+        out.text.extend_from_slice(&rest[start..end]);
+        n_corners += 1;
+    }
+    if n_corners < 3 || rest.get(at).is_some_and(|&byte| !is_line_end(byte)) {
+        out.text.truncate(text_before);
+        return false;
+    }
+    let (index, start, end) = line_largest;
+    if index > largest.index {
+        let word = (records.at + start, records.at + end);
+        *largest = Largest {
+            index,
+            line: records.line,
+            word,
+        };
+    }
+    finish_face(n_corners, out, naming);
+    records.at += at;
+    true
+}
+
+/// Ends a face that has been copied.
+fn finish_face(n_corners: usize, out: &mut Filtered, naming: &mut Naming) {
+    out.text.push(b'\n');
+    let part = naming.part();
+    if out.runs.last().is_none_or(|&(_, last)| last != part) {
+        out.runs.push((out.n_faces, part));
+    }
+    out.n_faces += 1;
+    out.n_corners += n_corners;
 }
 
 fn copy_vertex(records: &mut Records<'_>, out: &mut Filtered) -> Result<(), Located> {
@@ -204,13 +328,7 @@ fn copy_face(
         out.n_degenerate += 1;
         return Ok(());
     }
-    out.text.push(b'\n');
-    let part = naming.part();
-    if out.runs.last().is_none_or(|&(_, last)| last != part) {
-        out.runs.push((out.n_faces, part));
-    }
-    out.n_faces += 1;
-    out.n_corners += n_corners;
+    finish_face(n_corners, out, naming);
     Ok(())
 }
 

@@ -1,0 +1,13 @@
+//! Any bytes as OBJ: an error or a sound mesh, never a panic.
+#![no_main]
+
+use hiddenline::read::{ModelFormat, read_bytes};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let format = ModelFormat::from_word("obj");
+    if let Ok(model) = read_bytes("fuzzed", bytes, format) {
+        assert!(model.mesh.n_faces() > 0);
+        assert!(model.mesh.positions().iter().all(|p| p.is_finite()));
+    }
+});
