@@ -196,9 +196,7 @@ fn copy_plain_face(
         }
         let is_plain = index > 0
             && end - start <= MOST_DIGITS
-            && rest
-                .get(at)
-                .is_none_or(|&byte| byte == b' ' || is_line_end(byte));
+            && rest.get(at).is_none_or(|&byte| byte == b' ' || is_line_end(byte));
         if !is_plain {
             break;
         }
@@ -216,11 +214,7 @@ fn copy_plain_face(
     let (index, start, end) = line_largest;
     if index > largest.index {
         let word = (records.at + start, records.at + end);
-        *largest = Largest {
-            index,
-            line: records.line,
-            word,
-        };
+        *largest = Largest { index, line: records.line, word };
     }
     finish_face(n_corners, out, naming);
     records.at += at;
