@@ -50,6 +50,45 @@ struct Bounds {
     farthest: f64,
 }
 
+/// A triangle in a cell, with its box rounded outwards, so that most need not be looked up.
+#[derive(Debug, Clone, Copy, Default)]
+struct Entry {
+    triangle: u32,
+    low: [f32; 2],
+    high: [f32; 2],
+    nearest: f32,
+}
+
+impl Entry {
+    fn new(triangle: u32, bounds: &Bounds) -> Self {
+        Self {
+            triangle,
+            low: bounds.low.to_array().map(rounded_down),
+            high: bounds.high.to_array().map(rounded_up),
+            nearest: rounded_down(bounds.nearest),
+        }
+    }
+
+    #[inline]
+    fn is_apart(&self, segment: &Self, farthest: f32) -> bool {
+        self.low[0] > segment.high[0]
+            || self.low[1] > segment.high[1]
+            || self.high[0] < segment.low[0]
+            || self.high[1] < segment.low[1]
+            || self.nearest > farthest
+    }
+}
+
+fn rounded_down(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) > x { rounded.next_down() } else { rounded }
+}
+
+fn rounded_up(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) < x { rounded.next_up() } else { rounded }
+}
+
 /// Everything about the view that rounding outwards needs.
 #[derive(Debug, Clone, Copy)]
 struct Rounding {
@@ -109,7 +148,7 @@ pub(super) struct ImageIndex {
     levels: Vec<Level>,
     /// Where the triangles of each cell begin in `entries`.
     starts: Vec<u32>,
-    entries: Vec<u32>,
+    entries: Vec<Entry>,
     /// Depth behind which all is hidden, for each cell of all levels; empty when layers count.
     covered_from: Vec<f64>,
     /// Triangles that the near plane cuts: they are offered to every segment.
@@ -188,7 +227,7 @@ impl ImageIndex {
         let triangles = view.scene().triangles();
         let this = &*self;
         const CHUNK: usize = 1 << 14;
-        let parts: Vec<(Vec<(u32, u32)>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
+        let parts: Vec<(Vec<(u32, Entry)>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let (mut placed, mut everywhere) = (Vec::new(), Vec::new());
@@ -212,7 +251,7 @@ impl ImageIndex {
                             .get(cell as usize)
                             .is_none_or(|&depth| bounds.nearest <= depth);
                         if wanted && seen {
-                            placed.push((cell, triangle));
+                            placed.push((cell, Entry::new(triangle, &bounds)));
                         }
                     });
                 }
@@ -228,12 +267,12 @@ impl ImageIndex {
         for cell in 0..self.starts.len() - 1 {
             self.starts[cell + 1] += self.starts[cell];
         }
-        self.entries = vec![0; self.starts.last().map_or(0, |&n| n as usize)];
+        self.entries = vec![Entry::default(); self.starts.last().map_or(0, |&n| n as usize)];
         let mut next = self.starts.clone();
         for (placed, everywhere) in &parts {
-            for &(cell, triangle) in placed {
+            for &(cell, entry) in placed {
                 let slot = &mut next[cell as usize];
-                self.entries[*slot as usize] = triangle;
+                self.entries[*slot as usize] = entry;
                 *slot += 1;
             }
             self.everywhere.extend_from_slice(everywhere);
@@ -587,12 +626,18 @@ impl Visitor {
         }
         let bounds = index.rounding.bounds(segment.image, segment.depth);
         let separation = Separation::new(index, segment, &bounds);
+        let own = Entry::new(0, &bounds);
+        let farthest = rounded_up(bounds.farthest);
         let (seen, number) = (&mut self.seen, self.segment);
         index.levels.iter().rev().filter(|level| level.used).any(|level| {
             index.any_cell(level, segment, &bounds, |cell| {
                 let cell = cell as usize;
                 let range = index.starts[cell] as usize..index.starts[cell + 1] as usize;
-                index.entries[range].iter().any(|&triangle| {
+                index.entries[range].iter().any(|entry| {
+                    if entry.is_apart(&own, farthest) {
+                        return false;
+                    }
+                    let triangle = entry.triangle;
                     let last = &mut seen[triangle as usize];
                     if *last == number {
                         return false;
@@ -607,10 +652,9 @@ impl Visitor {
     }
 }
 
-/// Quick tests that a triangle's image does not meet a segment's, or lies behind it.
+/// A quick test that a triangle's image lies to one side of a segment's line.
 struct Separation<'i> {
     rounding: &'i Rounding,
-    bounds: Bounds,
     start: DVec2,
     along: DVec2,
     size: f64,
@@ -621,7 +665,6 @@ impl<'i> Separation<'i> {
         let [a, b] = segment.image;
         Self {
             rounding: &index.rounding,
-            bounds: *bounds,
             start: a,
             along: b - a,
             size: bounds.low.abs().max(bounds.high.abs()).element_sum(),
@@ -630,18 +673,11 @@ impl<'i> Separation<'i> {
 
     #[inline]
     fn apart(&self, points: [ImagePoint; 3]) -> bool {
-        let farthest = self.bounds.farthest + self.rounding.depth_error;
-        if points.iter().all(|p| p.depth > farthest) {
-            return true;
-        }
         let points = points.map(ImagePoint::image);
         let low = points[0].min(points[1]).min(points[2]);
         let high = points[0].max(points[1]).max(points[2]);
         let size = low.abs().max(high.abs()).element_sum().max(self.size);
         let error = self.rounding.image_error(size);
-        if low.cmpgt(self.bounds.high + error).any() || high.cmplt(self.bounds.low - error).any() {
-            return true;
-        }
         // Each factor of the area is off by two errors at most.
         let offsets = points.map(|p| p - self.start);
         let reach = offsets.iter().fold(self.along.abs(), |reach, d| reach.max(d.abs()));
