@@ -124,7 +124,7 @@ fn diagonal_azimuth_is_exactly_diagonal() {
         ..Framing::default()
     };
     let forward = framing.camera(BOUNDS).expect("a good camera").forward();
-    assert_eq!(forward.x, -forward.y);
+    assert_eq!(forward.x, forward.y);
     assert!((forward.length() - 7.3).abs() < 1e-12);
 }
 
