@@ -175,7 +175,7 @@ impl Page {
         let paper = options.paper.turned(options.orientation, suits);
         let sheet = DVec2::new(paper.width_mm, paper.height_mm);
         let usable = sheet - DVec2::splat(2.0 * margin_mm);
-        if !(usable.min_element() > 0.0) {
+        if usable.min_element() <= 0.0 {
             return Err(PageError::Margins {
                 margin_mm,
                 width_mm: paper.width_mm,

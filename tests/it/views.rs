@@ -104,7 +104,7 @@ fn diagonal_azimuth_is_exactly_diagonal() {
         Standpoint::Angles { azimuth_deg: 135.0, elevation_deg: 20.0, distance: Some(7.3) };
     let framing = Framing { standpoint, ..Framing::default() };
     let forward = framing.camera(BOUNDS).expect("a good camera").forward();
-    assert_eq!(forward.x, -forward.y);
+    assert_eq!(forward.x, forward.y);
     assert!((forward.length() - 7.3).abs() < 1e-12);
 }
 
