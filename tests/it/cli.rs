@@ -245,11 +245,8 @@ fn a_model_that_is_not_in_view_gives_an_empty_drawing_and_a_warning() {
 #[test]
 fn models_are_drawn_together() {
     let (_keep, folder) = with_cube();
-    fs::write(
-        folder.join("more.obj"),
-        CUBE.replace("v -1", "v 2").replace("v 1", "v 3"),
-    )
-    .expect("written");
+    fs::write(folder.join("more.obj"), CUBE.replace("v -1", "v 2").replace("v 1", "v 3"))
+        .expect("written");
     let arguments = ["draw", "cube.obj", "more.obj", "--stats"];
     let stderr = text(&hiddenline(&folder, &arguments).stderr);
     assert!(stderr.contains("\"faces\":12"), "{stderr}");
