@@ -118,8 +118,9 @@ impl EdgeTruth {
 pub struct Settings {
     /// A triangle does not cover an edge both of whose ends lie within this distance of its plane.
     pub contact_tolerance: f64,
-    /// Leaves out pairs whose boxes in the image, computed in `f64`, are clearly apart: by more
-    /// than 1e-6 of their coordinates' size, a hundred million times the rounding error.
+    /// Leaves out pairs whose boxes in the image, computed in `f64`, are clearly apart: by a
+    /// thousandth of the image in perspective and a millionth of the distance in orthographic
+    /// views, many times the rounding error.
     pub reject_by_boxes: bool,
 }
 
@@ -223,7 +224,10 @@ impl World {
             }
         };
         Self {
-            points: distinct.iter().map(|p| p.map(|x| scaled(x, exponent))).collect(),
+            points: distinct
+                .iter()
+                .map(|p| p.map(|x| scaled(x, exponent)))
+                .collect(),
             positions: distinct,
             faces,
             exponent,
@@ -265,7 +269,11 @@ impl World {
             }
             if sign(&heights[i]) * sign(&heights[j]) < 0 {
                 // The weights are those of the other end's distance, both positive.
-                let (a, b) = if sign(&heights[i]) > 0 { (i, j) } else { (j, i) };
+                let (a, b) = if sign(&heights[i]) > 0 {
+                    (i, j)
+                } else {
+                    (j, i)
+                };
                 let (of_a, of_b) = (-&heights[b], &heights[a]);
                 kept.push([0, 1, 2, 3].map(|k| &corners[a][k] * &of_a + &corners[b][k] * of_b));
             }
@@ -296,13 +304,24 @@ impl World {
                     1 => plane,
                     _ => negated(plane),
                 };
-                Border { plane, inner_corner }
+                Border {
+                    plane,
+                    inner_corner,
+                }
             })
             .collect();
-        let normal_squared =
-            &plane[0] * &plane[0] + &plane[1] * &plane[1] + &plane[2] * &plane[2];
-        let image_box = if boxes { self.image_box(&triangle) } else { None };
-        Some(Cover { borders, plane, normal_squared, image_box })
+        let normal_squared = &plane[0] * &plane[0] + &plane[1] * &plane[1] + &plane[2] * &plane[2];
+        let image_box = if boxes {
+            self.image_box(&triangle)
+        } else {
+            None
+        };
+        Some(Cover {
+            borders,
+            plane,
+            normal_squared,
+            image_box,
+        })
     }
 
     /// A box around the image, a little too large; `None` when a vertex is not well in front.
@@ -383,7 +402,12 @@ impl World {
                 t1 = t1.min(Ratio::new(at_p.clone(), at_p - at_q));
             }
         }
-        (t0 < t1).then_some(Hidden { t0, t1, left, right })
+        (t0 < t1).then_some(Hidden {
+            t0,
+            t1,
+            left,
+            right,
+        })
     }
 
     /// Whether the point with this value in the triangle's plane is at most `tolerance` away.
@@ -412,7 +436,11 @@ impl World {
             (a, b) if a <= 0 && b <= 0 => None,
             (a, _) => {
                 let cut = Ratio::new(at_p.clone(), at_p - at_q);
-                Some(if a > 0 { (whole.0, cut) } else { (cut, whole.1) })
+                Some(if a > 0 {
+                    (whole.0, cut)
+                } else {
+                    (cut, whole.1)
+                })
             }
         }
     }
@@ -460,7 +488,11 @@ fn pieces(kept: (Ratio, Ratio), hidden: &[Hidden]) -> Vec<Piece> {
         let qi = left.min(right) as u32;
         match pieces.last_mut() {
             Some(last) if last.qi == qi => last.t1 = pair[1].clone(),
-            _ => pieces.push(Piece { t0: pair[0].clone(), t1: pair[1].clone(), qi }),
+            _ => pieces.push(Piece {
+                t0: pair[0].clone(),
+                t1: pair[1].clone(),
+                qi,
+            }),
         }
     }
     pieces
@@ -485,11 +517,17 @@ pub fn truth(
 
     // (lower vertex, higher vertex) → (face, whether it runs from the lower one).
     let mut uses: HashMap<(usize, usize), Vec<(usize, bool)>> = HashMap::new();
-    let normals: Vec<_> = world.faces.iter().map(|f| newell(&world.points, f)).collect();
+    let normals: Vec<_> = world
+        .faces
+        .iter()
+        .map(|f| newell(&world.points, f))
+        .collect();
     for (f, face) in world.faces.iter().enumerate() {
         for (i, &a) in face.iter().enumerate() {
             let b = face[(i + 1) % face.len()];
-            uses.entry((a.min(b), a.max(b))).or_default().push((f, a < b));
+            uses.entry((a.min(b), a.max(b)))
+                .or_default()
+                .push((f, a < b));
         }
     }
 
@@ -502,7 +540,11 @@ pub fn truth(
             if let [(f, f_up), (g, g_up)] = uses[..] {
                 let normal_of_g = normals[g].clone();
                 let flip = f_up == g_up;
-                let normal_of_g = if flip { normal_of_g.map(|x| -x) } else { normal_of_g };
+                let normal_of_g = if flip {
+                    normal_of_g.map(|x| -x)
+                } else {
+                    normal_of_g
+                };
                 between = angle(&normals[f], &normal_of_g);
                 let at_f = world.facing(&world.faces[f], &normals[f]);
                 let at_g = world.facing(&world.faces[g], &normal_of_g);
@@ -513,8 +555,11 @@ pub fn truth(
             let (p, q) = (world.point(a), world.point(b));
             let pieces = match world.kept_range(&p, &q) {
                 Some(kept) if !image_is_point => {
-                    let edge_box =
-                        if settings.reject_by_boxes { world.image_box(&[a, b]) } else { None };
+                    let edge_box = if settings.reject_by_boxes {
+                        world.image_box(&[a, b])
+                    } else {
+                        None
+                    };
                     let hidden: Vec<Hidden> = covers
                         .iter()
                         .filter(|c| !are_apart(edge_box, c.image_box))

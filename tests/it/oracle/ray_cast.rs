@@ -5,8 +5,8 @@
 //! that displacement alone, so meetings next to the point itself do not count. Only the welded
 //! positions and triangles are shared with the oracle.
 
-use super::World;
 use super::exact::Ratio;
+use super::{EdgeTruth, Sight, World};
 use dashu_ratio::RBig;
 
 type V = [RBig; 3];
@@ -39,11 +39,9 @@ fn cross(a: &V, b: &V) -> V {
 ///
 /// Wrong when something lies closer in front of the edge than a millionth of the distance to the
 /// eye without touching it, or passes closer beside it than 1e-12.
-pub fn counts_beside(world: &World, ends: [[f64; 3]; 2], t0: &Ratio, t1: &Ratio) -> [u32; 2] {
+fn counts_beside(world: &World, ends: [[f64; 3]; 2], t0: &Ratio, t1: &Ratio) -> [u32; 2] {
     let triangles = world.triangles().unwrap();
-    let rational = |r: &Ratio| {
-        RBig::from_parts_signed(r.numerator.clone(), r.denominator.clone())
-    };
+    let rational = |r: &Ratio| RBig::from_parts_signed(r.numerator.clone(), r.denominator.clone());
     // No simple fraction of the piece: nothing else should happen to pass through the point.
     let somewhere = RBig::from_parts_signed(41_421_356.into(), 100_000_007.into());
     let (t0, t1) = (rational(t0), rational(t1));
@@ -86,10 +84,41 @@ pub fn counts_beside(world: &World, ends: [[f64; 3]; 2], t0: &Ratio, t1: &Ratio)
                     return false;
                 }
             }
-            [(&a, &b), (&b, &c), (&c, &a)].iter().all(|(u, w)| {
-                dot(&cross(&minus(w, u), &minus(&hit, u)), &normal) >= zero
-            })
+            [(&a, &b), (&b, &c), (&c, &a)]
+                .iter()
+                .all(|(u, w)| dot(&cross(&minus(w, u), &minus(&hit, u)), &normal) >= zero)
         };
         triangles.iter().filter(|t| meets(t)).count() as u32
     })
+}
+
+/// Checks every piece of every edge; the number of pieces.
+///
+/// # Errors
+/// The first piece whose count differs, in words.
+pub fn agrees_with(
+    positions: &[[f64; 3]],
+    faces: &[Vec<u32>],
+    sight: &Sight,
+    edges: &[EdgeTruth],
+) -> Result<usize, String> {
+    let world = World::new(positions, faces, sight);
+    let mut n_pieces = 0;
+    for edge in edges {
+        for piece in &edge.pieces {
+            let (t0, t1) = (piece.t0.to_f64(), piece.t1.to_f64());
+            if t1 - t0 < 1e-5 {
+                continue; // what ends it may be nearer than the displacement allows for
+            }
+            let [left, right] = counts_beside(&world, edge.ends, &piece.t0, &piece.t1);
+            if left.min(right) != piece.qi {
+                return Err(format!(
+                    "edge {:?} from {t0} to {t1}: qi {}, but {left} and {right} beside it",
+                    edge.ends, piece.qi
+                ));
+            }
+            n_pieces += 1;
+        }
+    }
+    Ok(n_pieces)
 }
