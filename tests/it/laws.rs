@@ -357,3 +357,5 @@ macro_rules! laws {
 }
 
 laws!(oracle, super::by_the_oracle);
+laws!(roberts, crate::engines::roberts);
+laws!(all_pairs, crate::engines::all_pairs);
