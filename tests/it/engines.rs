@@ -121,7 +121,7 @@ fn assert_truth(
                 format!("{}: {problem}\nsmallest: {scene:?}", scene.name),
             ));
         }
-        if failures.len() >= 10 {
+        if failures.len() >= 20 {
             break;
         }
     }
