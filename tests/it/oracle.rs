@@ -51,7 +51,7 @@ pub enum Angle {
     /// Exactly none.
     Zero,
     Cosine(f64),
-    /// No two faces, or one without area.
+    /// No two faces, or one with next to no area.
     Unknown,
 }
 
@@ -453,6 +453,27 @@ impl World {
         sign(&dot(normal, &to_eye))
     }
 
+    /// Whether a face's normal, computed in `f64`, could be off by more than 1e-9 of its length.
+    fn is_sliver(&self, face: usize, normal: &[Int; 3]) -> bool {
+        let corners = || self.faces[face].iter().map(|&v| self.positions[v]);
+        let largest = corners().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let spread = |k: usize| {
+            let (low, high) = corners()
+                .map(|p| p[k])
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                    (l.min(x), h.max(x))
+                });
+            high - low
+        };
+        let size = (0..3).map(spread).fold(0.0, f64::max);
+        // The normal's unit is 2^exponent squared; it has the size of an area.
+        let area = normal
+            .clone()
+            .map(|x| Ratio::new(x, Int::ONE).to_f64().abs());
+        let area = area.iter().fold(0.0, |a: f64, &x| a.max(x));
+        area * 2f64.powi(2 * self.exponent) <= 1e-6 * size * largest
+    }
+
     fn image_is_point(&self, a: usize, b: usize) -> bool {
         let [x, y, z, w] = &self.eye;
         let (p, q) = (&self.points[a], &self.points[b]);
@@ -545,10 +566,13 @@ pub fn truth(
                 } else {
                     normal_of_g
                 };
-                between = angle(&normals[f], &normal_of_g);
+                let has_area = !is_zero(&normals[f]) && !is_zero(&normals[g]);
+                if !world.is_sliver(f, &normals[f]) && !world.is_sliver(g, &normals[g]) {
+                    between = angle(&normals[f], &normal_of_g);
+                }
                 let at_f = world.facing(&world.faces[f], &normals[f]);
                 let at_g = world.facing(&world.faces[g], &normal_of_g);
-                let decidable = between != Angle::Unknown && !(flip && at_f * at_g == 0);
+                let decidable = has_area && !(flip && at_f * at_g == 0);
                 silhouette = decidable.then_some((at_f > 0) != (at_g > 0));
             }
             let image_is_point = world.image_is_point(a, b);
