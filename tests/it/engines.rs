@@ -164,7 +164,7 @@ fn smallest(
 }
 
 fn hides_as_the_truth_says(solve: Solve, first: u64) {
-    assert_truth(first, 2000, |scene, edges| {
+    assert_truth(first, 4000, |scene, edges| {
         let Some(spans) = solve(scene) else {
             return Ok(());
         };
@@ -185,7 +185,7 @@ fn all_pairs_hide_as_the_truth_says() {
 /// Spans without counting layers, and with doubled lines marked, as drawings use them.
 #[test]
 fn drawings_hide_as_the_truth_says_without_counting() {
-    assert_truth(20_000, 800, |scene, edges| {
+    assert_truth(20_000, 2000, |scene, edges| {
         let mut flat = edges.to_vec();
         for edge in &mut flat {
             edge.pieces.iter_mut().for_each(|p| p.qi = p.qi.min(1));
@@ -215,7 +215,7 @@ fn contact_within_the_tolerance_hides_nothing() {
             contact_tolerance: tolerance,
             ..COUNTED
         };
-        for seed in 30_000..30_000 + number_of_scenes(250) {
+        for seed in 30_000..30_000 + number_of_scenes(400) {
             let scene = random(seed);
             let of_truth = TruthSettings {
                 contact_tolerance: tolerance,
@@ -266,7 +266,7 @@ fn edges_are_of_the_kind_the_truth_says_and_selected_by_any() {
             Kind::Mesh,
         ],
     ];
-    assert_truth(40_000, 1000, |scene, edges| {
+    assert_truth(40_000, 2000, |scene, edges| {
         for selection in &selections {
             let lines = selection
                 .iter()
