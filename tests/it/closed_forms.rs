@@ -36,17 +36,10 @@ fn is_close(a: f64, b: f64) -> bool {
 fn pieces(edges: &[EdgeTruth], a: P, b: P) -> Vec<(f64, f64, u32)> {
     let ends = if a < b { [a, b] } else { [b, a] };
     let edge = edges.iter().find(|e| e.ends == ends).unwrap();
-    let mut list: Vec<_> = edge
-        .pieces
-        .iter()
-        .map(|p| (p.t0.to_f64(), p.t1.to_f64(), p.qi))
-        .collect();
+    let mut list: Vec<_> =
+        edge.pieces.iter().map(|p| (p.t0.to_f64(), p.t1.to_f64(), p.qi)).collect();
     if b < a {
-        list = list
-            .iter()
-            .rev()
-            .map(|&(t0, t1, qi)| (1.0 - t1, 1.0 - t0, qi))
-            .collect();
+        list = list.iter().rev().map(|&(t0, t1, qi)| (1.0 - t1, 1.0 - t0, qi)).collect();
     }
     list
 }
@@ -65,16 +58,8 @@ fn assert_pieces(edges: &[EdgeTruth], a: P, b: P, expected: &[(f64, f64, u32)]) 
 fn warnock() -> Scene {
     let mut model = Model::default();
     model.face(&[[18.5, 12.5, 0.0], [22.5, 16.5, 0.0], [14.5, 22.5, 14.0]]);
-    model.face(&[
-        [12.5, 14.5, 6.0],
-        [20.5, 14.5, 6.0],
-        [20.5, 20.5, 6.0],
-        [12.5, 20.5, 6.0],
-    ]);
-    model.seen_by(
-        "Warnock's pair",
-        orthographic([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]),
-    )
+    model.face(&[[12.5, 14.5, 6.0], [20.5, 14.5, 6.0], [20.5, 20.5, 6.0], [12.5, 20.5, 6.0]]);
+    model.seen_by("Warnock's pair", orthographic([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]))
 }
 
 #[test]
@@ -87,12 +72,7 @@ fn warnocks_triangle_and_square_hide_each_other_where_they_should() {
     assert_pieces(&edges, b, c, &[(0.0, from, 0), (from, to, 1), (to, 1.0, 0)]);
     let (from, to) = (1.0 / 5.0, 4.0 / 7.0);
     assert_pieces(&edges, c, a, &[(0.0, from, 0), (from, to, 1), (to, 1.0, 0)]);
-    let [p, q, r, s] = [
-        [12.5, 14.5, 6.0],
-        [20.5, 14.5, 6.0],
-        [20.5, 20.5, 6.0],
-        [12.5, 20.5, 6.0],
-    ];
+    let [p, q, r, s] = [[12.5, 14.5, 6.0], [20.5, 14.5, 6.0], [20.5, 20.5, 6.0], [12.5, 20.5, 6.0]];
     assert_pieces(&edges, p, q, &[(0.0, 5.2 / 8.0, 0), (5.2 / 8.0, 1.0, 1)]);
     assert_pieces(&edges, q, r, &[(0.0, 3.5 / 6.0, 1), (3.5 / 6.0, 1.0, 0)]);
     assert_pieces(&edges, r, s, &[(0.0, 1.0, 0)]);
@@ -106,36 +86,19 @@ fn warnocks_triangle_and_square_hide_each_other_where_they_should() {
 fn cube(edge: f64, direction: P) -> Scene {
     let mut model = Model::default();
     model.add_box([0.0; 3], [edge; 3]);
-    let up = if direction[0] == 0.0 && direction[1] == 0.0 {
-        [0.0, 1.0, 0.0]
-    } else {
-        [0.0, 0.0, 1.0]
-    };
-    model.seen_by(
-        format!("a cube along {direction:?}"),
-        orthographic(direction, up),
-    )
+    let up =
+        if direction[0] == 0.0 && direction[1] == 0.0 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
+    model.seen_by(format!("a cube along {direction:?}"), orthographic(direction, up))
 }
 
 #[test]
 fn a_cube_shows_three_quarters_of_its_edges_from_a_general_direction() {
-    for direction in [
-        [1.0, 1.0, 1.0],
-        [-1.0, 2.0, 3.0],
-        [5.0, -1.0, -2.0],
-        [-7.0, -1.0, 1.0],
-    ] {
+    for direction in [[1.0, 1.0, 1.0], [-1.0, 2.0, 3.0], [5.0, -1.0, -2.0], [-7.0, -1.0, 1.0]] {
         let scene = cube(2.0, direction);
         let length = direction.iter().map(|x| x * x).sum::<f64>();
-        let sum: f64 = direction
-            .iter()
-            .map(|x| (1.0 - x * x / length).sqrt())
-            .sum();
+        let sum: f64 = direction.iter().map(|x| (1.0 - x * x / length).sqrt()).sum();
         let [visible, hidden] = lengths(&scene, &edges_of(&scene));
-        assert!(
-            is_close(visible, 6.0 * sum) && is_close(hidden, 2.0 * sum),
-            "{direction:?}"
-        );
+        assert!(is_close(visible, 6.0 * sum) && is_close(hidden, 2.0 * sum), "{direction:?}");
     }
     let scene = cube(1.0, [1.0, 1.0, 1.0]);
     let [visible, hidden] = lengths(&scene, &edges_of(&scene));
@@ -156,35 +119,21 @@ fn a_cube_along_an_axis_shows_eight_edges_on_four_lines() {
 
 #[test]
 fn a_cube_with_one_zero_component_shows_two_rectangles_of_seven_lines() {
-    for (direction, zero) in [
-        ([0.0, 1.0, 2.0], 0),
-        ([3.0, 0.0, -1.0], 1),
-        ([-1.0, 1.0, 0.0], 2),
-    ] {
+    for (direction, zero) in [([0.0, 1.0, 2.0], 0), ([3.0, 0.0, -1.0], 1), ([-1.0, 1.0, 0.0], 2)] {
         let scene = cube(1.0, direction);
         let length = direction.iter().map(|x| x * x).sum::<f64>();
         let others = (0..3).filter(|&i| i != zero);
-        let sides: f64 = others
-            .map(|i| (1.0 - direction[i] * direction[i] / length).sqrt())
-            .sum();
+        let sides: f64 = others.map(|i| (1.0 - direction[i] * direction[i] / length).sqrt()).sum();
         // Back edges lie on the same lines as the rectangles' sides and are visible as well.
         let visible = visible_segments(&scene.sight, &edges_of(&scene), |_| true);
         let union = compare_strokes(&visible, &[], &[]).total;
-        assert!(
-            (union - (3.0 + 2.0 * sides)).abs() < 1e-8,
-            "{direction:?}: {union}"
-        );
+        assert!((union - (3.0 + 2.0 * sides)).abs() < 1e-8, "{direction:?}: {union}");
     }
 }
 
 #[test]
 fn a_tetrahedron_shows_three_five_or_six_edges() {
-    let [a, b, c, d] = [
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ];
+    let [a, b, c, d] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     let seen_along = |direction: P| {
         let mut model = Model::default();
         for corners in [[a, b, c], [a, d, b], [a, c, d], [b, d, c]] {
@@ -194,10 +143,7 @@ fn a_tetrahedron_shows_three_five_or_six_edges() {
     };
     let n_visible = |direction: P| {
         let edges = edges_of(&seen_along(direction));
-        edges
-            .iter()
-            .filter(|e| e.pieces.iter().any(|p| p.qi == 0))
-            .count()
+        edges.iter().filter(|e| e.pieces.iter().any(|p| p.qi == 0)).count()
     };
     // One face: seen against its normal, which is the direction opposite to the fourth vertex.
     assert_eq!(n_visible([10.0, 11.0, 12.0]), 3);
@@ -215,49 +161,21 @@ fn crossing_boxes_cut_each_others_edges_where_they_pierce() {
     model.add_box([-2.0, -1.0, -1.0], [2.0, 1.0, 1.0]);
     model.add_box([-1.0, -2.0, -0.5], [1.0, 2.0, 1.5]);
     // From in front, right and above: (1, −2, 3) away.
-    let scene = model.seen_by(
-        "crossing boxes",
-        orthographic([-1.0, 2.0, -3.0], [0.0, 0.0, 1.0]),
-    );
+    let scene = model.seen_by("crossing boxes", orthographic([-1.0, 2.0, -3.0], [0.0, 0.0, 1.0]));
     let edges = edges_of(&scene);
     // The near upper edge of A (along x at y = −1, z = 1) runs inside B from x = −1 to 1. In front
     // of it, to the left, B's own front shows nothing: B's left wall is edge x = −1 turned away.
     let left = pieces(&edges, [-2.0, -1.0, 1.0], [2.0, -1.0, 1.0]);
     // Inside B from t = 1/4 to 3/4.
-    assert!(
-        left.iter()
-            .filter(|p| p.2 == 0)
-            .all(|p| p.1 <= 0.25 + 1e-12 || p.0 >= 0.75 - 1e-12)
-    );
-    assert!(
-        left.iter()
-            .any(|p| is_close(p.0, 0.75) && is_close(p.1, 1.0) && p.2 == 0),
-        "{left:?}"
-    );
+    assert!(left.iter().filter(|p| p.2 == 0).all(|p| p.1 <= 0.25 + 1e-12 || p.0 >= 0.75 - 1e-12));
+    assert!(left.iter().any(|p| is_close(p.0, 0.75) && is_close(p.1, 1.0) && p.2 == 0), "{left:?}");
     // The upper near edge of B (y = −2, z = 3/2) has nothing in front of it.
-    assert_pieces(
-        &edges,
-        [-1.0, -2.0, 1.5],
-        [1.0, -2.0, 1.5],
-        &[(0.0, 1.0, 0)],
-    );
+    assert_pieces(&edges, [-1.0, -2.0, 1.5], [1.0, -2.0, 1.5], &[(0.0, 1.0, 0)]);
     // B's lower edge along y at x = 1, z = −1/2 is inside A for y in −1..1.
     let low = pieces(&edges, [1.0, -2.0, -0.5], [1.0, 2.0, -0.5]);
-    assert!(
-        low.iter().filter(|p| p.2 == 0).all(|p| p.1 <= 0.25 + 1e-12),
-        "{low:?}"
-    );
-    assert!(
-        low.iter()
-            .any(|p| is_close(p.0, 0.0) && is_close(p.1, 0.25) && p.2 == 0),
-        "{low:?}"
-    );
-    assert!(
-        edges
-            .iter()
-            .filter_map(|e| e.kinds(30.0))
-            .all(|k| k != [Kind::Mesh])
-    );
+    assert!(low.iter().filter(|p| p.2 == 0).all(|p| p.1 <= 0.25 + 1e-12), "{low:?}");
+    assert!(low.iter().any(|p| is_close(p.0, 0.0) && is_close(p.1, 0.25) && p.2 == 0), "{low:?}");
+    assert!(edges.iter().filter_map(|e| e.kinds(30.0)).all(|k| k != [Kind::Mesh]));
 }
 
 /// z = 0 at even and 1 at odd x; valleys hide what lies behind peaks.
@@ -271,11 +189,7 @@ fn lines_across_a_triangle_wave_are_hidden_behind_its_peaks() {
         // Cut at x + 1/4 as well, next to where the shadow ends.
         let cut = |y: f64| {
             let u = 0.25;
-            [
-                f64::from(x) + u,
-                y,
-                height(x) + u * (height(x + 1) - height(x)),
-            ]
+            [f64::from(x) + u, y, height(x) + u * (height(x + 1) - height(x))]
         };
         for y in [0.0, 2.0] {
             model.face(&[at(x, y), cut(y), cut(y + 2.0), at(x, y + 2.0)]);
@@ -307,10 +221,7 @@ fn lines_across_a_triangle_wave_are_hidden_behind_its_peaks() {
     let half = pieces(&edges, [2.25, 2.0, 0.25], [3.0, 2.0, 1.0]);
     let at = (7.0 / 3.0 - 2.25) / 0.75;
     assert_eq!(half.len(), 2);
-    assert!(
-        is_close(half[0].1, at) && half[0].2 > 0 && half[1].2 == 0,
-        "{half:?}"
-    );
+    assert!(is_close(half[0].1, at) && half[0].2 > 0 && half[1].2 == 0, "{half:?}");
 }
 
 #[test]
@@ -338,12 +249,7 @@ fn the_near_plane_opens_a_box_around_the_eye() {
 fn a_square_cut_by_the_near_plane_hides_up_to_the_cut_only() {
     // The eye at the origin looks along y; a slanted square begins behind the near plane (y = 1).
     let mut model = Model::default();
-    model.face(&[
-        [-4.0, 0.0, 1.0],
-        [4.0, 0.0, 1.0],
-        [4.0, 4.0, -1.0],
-        [-4.0, 4.0, -1.0],
-    ]);
+    model.face(&[[-4.0, 0.0, 1.0], [4.0, 0.0, 1.0], [4.0, 4.0, -1.0], [-4.0, 4.0, -1.0]]);
     // A vertical line far behind it: a thin triangle seen edge-on.
     model.face(&[[0.0, 8.0, 8.0], [0.0, 8.0, -8.0], [0.0, 9.0, 0.0]]);
     let sight = perspective([0.0; 3], [0.0, 1.0, 0.0], 1.0);
@@ -364,10 +270,7 @@ fn a_box_behind_another_of_its_size_loses_no_line_and_one_between_shows_none() {
     model.add_box([0.0, 0.0, 0.0], [2.0, 1.0, 2.0]);
     model.add_box([0.0, 4.0, 0.0], [2.0, 5.0, 2.0]);
     model.add_box([0.5, 2.0, 0.5], [1.5, 3.0, 1.5]);
-    let scene = model.seen_by(
-        "boxes in a row",
-        orthographic([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
-    );
+    let scene = model.seen_by("boxes in a row", orthographic([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]));
     for e in edges_of(&scene).iter().filter(|e| !e.image_is_point) {
         let between = e.ends.iter().all(|p| p[1] >= 2.0 && p[1] <= 3.0);
         assert_eq!(e.pieces.len(), 1);
@@ -378,20 +281,10 @@ fn a_box_behind_another_of_its_size_loses_no_line_and_one_between_shows_none() {
 #[test]
 fn a_segment_behind_the_shared_diagonal_of_two_triangles_is_hidden() {
     let mut model = Model::default();
-    let [a, b, c, d] = [
-        [0.0, 0.0, 0.0],
-        [4.0, 0.0, 0.0],
-        [4.0, 0.0, 4.0],
-        [0.0, 0.0, 4.0],
-    ];
+    let [a, b, c, d] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 0.0, 4.0], [0.0, 0.0, 4.0]];
     model.face(&[a, b, c]);
     model.face(&[a, c, d]);
     model.face(&[[1.0, 2.0, 1.0], [3.0, 2.0, 3.0], [2.0, 3.0, 1.0]]);
     let scene = model.seen_by("a diagonal", orthographic([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]));
-    assert_pieces(
-        &edges_of(&scene),
-        [1.0, 2.0, 1.0],
-        [3.0, 2.0, 3.0],
-        &[(0.0, 1.0, 1)],
-    );
+    assert_pieces(&edges_of(&scene), [1.0, 2.0, 1.0], [3.0, 2.0, 3.0], &[(0.0, 1.0, 1)]);
 }

@@ -26,19 +26,10 @@ fn mesh(scene: &TestScene) -> Mesh {
 fn camera(scene: &TestScene) -> Camera {
     let sight = &scene.sight;
     let projection = match sight.near {
-        Some(near) => Projection::Perspective {
-            fov_deg: 40.0,
-            near,
-        },
+        Some(near) => Projection::Perspective { fov_deg: 40.0, near },
         None => Projection::Orthographic,
     };
-    Camera::new(
-        sight.eye.into(),
-        sight.target.into(),
-        sight.up.into(),
-        projection,
-    )
-    .unwrap()
+    Camera::new(sight.eye.into(), sight.target.into(), sight.up.into(), projection).unwrap()
 }
 
 /// The drawn edges of a scene with their kinds.
@@ -62,11 +53,7 @@ pub fn solve_with(
                 match spans.last_mut() {
                     // Told apart by `doubled` alone.
                     Some(last) if last.qi == s.qi && settings.find_doubled => last.t1 = s.t1,
-                    _ => spans.push(EngineSpan {
-                        t0: s.t0,
-                        t1: s.t1,
-                        qi: s.qi,
-                    }),
+                    _ => spans.push(EngineSpan { t0: s.t0, t1: s.t1, qi: s.qi }),
                 }
             }
             let ends = built.topology().edge(drawn.edge).map(position);
@@ -75,11 +62,8 @@ pub fn solve_with(
         .collect()
 }
 
-const COUNTED: Settings = Settings {
-    contact_tolerance: 0.0,
-    count_layers: true,
-    find_doubled: false,
-};
+const COUNTED: Settings =
+    Settings { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
 
 fn all_edges(scene: &TestScene, engine: Engine) -> Option<Vec<EngineEdge>> {
     let drawn = solve_with(scene, engine, LineSelection::all_edges(), &COUNTED);
@@ -116,10 +100,7 @@ fn assert_truth(
         if let Err(problem) = check(&scene, &edges) {
             let size = scene.positions.len();
             let scene = smallest(&scene, &check);
-            failures.push((
-                size,
-                format!("{}: {problem}\nsmallest: {scene:?}", scene.name),
-            ));
+            failures.push((size, format!("{}: {problem}\nsmallest: {scene:?}", scene.name)));
         }
         if failures.len() >= 20 {
             break;
@@ -127,10 +108,7 @@ fn assert_truth(
     }
     failures.sort();
     if let Some((_, failure)) = failures.first() {
-        panic!(
-            "{} of {n_checked} scenes differ, the smallest:\n{failure}",
-            failures.len()
-        );
+        panic!("{} of {n_checked} scenes differ, the smallest:\n{failure}", failures.len());
     }
 }
 
@@ -151,11 +129,7 @@ fn smallest(
         }
     }
     let faces = scene.faces.clone();
-    scene.positions = faces
-        .iter()
-        .flatten()
-        .map(|&v| scene.positions[v as usize])
-        .collect();
+    scene.positions = faces.iter().flatten().map(|&v| scene.positions[v as usize]).collect();
     let mut next = 0..;
     for v in scene.faces.iter_mut().flatten() {
         *v = next.next().unwrap();
@@ -190,16 +164,8 @@ fn drawings_hide_as_the_truth_says_without_counting() {
         for edge in &mut flat {
             edge.pieces.iter_mut().for_each(|p| p.qi = p.qi.min(1));
         }
-        let settings = Settings {
-            find_doubled: true,
-            ..Settings::default()
-        };
-        let drawn = solve_with(
-            scene,
-            Engine::Roberts,
-            LineSelection::all_edges(),
-            &settings,
-        );
+        let settings = Settings { find_doubled: true, ..Settings::default() };
+        let drawn = solve_with(scene, Engine::Roberts, LineSelection::all_edges(), &settings);
         let mut spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
         for span in spans.iter_mut().flat_map(|e| &mut e.spans) {
             span.qi = span.qi.min(1);
@@ -211,25 +177,14 @@ fn drawings_hide_as_the_truth_says_without_counting() {
 #[test]
 fn contact_within_the_tolerance_hides_nothing() {
     for tolerance in [1e-9, 0.5, 1.0] {
-        let settings = Settings {
-            contact_tolerance: tolerance,
-            ..COUNTED
-        };
+        let settings = Settings { contact_tolerance: tolerance, ..COUNTED };
         for seed in 30_000..30_000 + number_of_scenes(400) {
             let scene = random(seed);
-            let of_truth = TruthSettings {
-                contact_tolerance: tolerance,
-                ..Default::default()
-            };
+            let of_truth = TruthSettings { contact_tolerance: tolerance, ..Default::default() };
             let Ok(edges) = truth(&scene.positions, &scene.faces, &scene.sight, of_truth) else {
                 continue;
             };
-            let drawn = solve_with(
-                &scene,
-                Engine::Roberts,
-                LineSelection::all_edges(),
-                &settings,
-            );
+            let drawn = solve_with(&scene, Engine::Roberts, LineSelection::all_edges(), &settings);
             let spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
             compare(&scene.sight, &edges, &spans)
                 .unwrap_or_else(|e| panic!("{}, tolerance {tolerance}: {e}", scene.name));
@@ -250,27 +205,14 @@ fn name(kind: Kind) -> StrokeKind {
 #[test]
 fn edges_are_of_the_kind_the_truth_says_and_selected_by_any() {
     let selections = [
-        vec![
-            Kind::Boundary,
-            Kind::Nonmanifold,
-            Kind::Silhouette,
-            Kind::Crease,
-        ],
+        vec![Kind::Boundary, Kind::Nonmanifold, Kind::Silhouette, Kind::Crease],
         vec![Kind::Crease],
         vec![Kind::Silhouette, Kind::Boundary],
-        vec![
-            Kind::Boundary,
-            Kind::Nonmanifold,
-            Kind::Silhouette,
-            Kind::Crease,
-            Kind::Mesh,
-        ],
+        vec![Kind::Boundary, Kind::Nonmanifold, Kind::Silhouette, Kind::Crease, Kind::Mesh],
     ];
     assert_truth(40_000, 2000, |scene, edges| {
         for selection in &selections {
-            let lines = selection
-                .iter()
-                .fold(LineSelection::NONE, |l, &k| l.with(name(k)));
+            let lines = selection.iter().fold(LineSelection::NONE, |l, &k| l.with(name(k)));
             let drawn = solve_with(scene, Engine::Roberts, lines, &COUNTED);
             for edge in edges.iter().filter(|e| !e.pieces.is_empty()) {
                 let Some(kinds) = edge.kinds(30.0) else {

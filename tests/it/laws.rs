@@ -28,18 +28,11 @@ fn picture(edges: Vec<EngineEdge>, back: impl Fn(P) -> P) -> Picture {
         .filter(|e| !e.spans.is_empty())
         .map(|e| {
             let [a, b] = e.ends.map(&back);
-            let turned = |s: &EngineSpan| EngineSpan {
-                t0: 1.0 - s.t1,
-                t1: 1.0 - s.t0,
-                qi: s.qi,
-            };
+            let turned = |s: &EngineSpan| EngineSpan { t0: 1.0 - s.t1, t1: 1.0 - s.t0, qi: s.qi };
             if a < b {
                 ([bits(a), bits(b)], e.spans)
             } else {
-                (
-                    [bits(b), bits(a)],
-                    e.spans.iter().rev().map(turned).collect(),
-                )
+                ([bits(b), bits(a)], e.spans.iter().rev().map(turned).collect())
             }
         })
         .collect()
@@ -47,11 +40,7 @@ fn picture(edges: Vec<EngineEdge>, back: impl Fn(P) -> P) -> Picture {
 
 fn is_same(a: &[EngineSpan], b: &[EngineSpan]) -> bool {
     let long = |spans: &[EngineSpan]| -> Vec<EngineSpan> {
-        spans
-            .iter()
-            .copied()
-            .filter(|s| s.t1 - s.t0 > TINY)
-            .collect()
+        spans.iter().copied().filter(|s| s.t1 - s.t0 > TINY).collect()
     };
     let (a, b) = (long(a), long(b));
     a.len() == b.len()
@@ -64,11 +53,7 @@ fn assert_same(scene: &Scene, before: &Picture, after: &Picture) {
     for (edge, spans) in before {
         let ends = edge.map(|p| p.map(f64::from_bits));
         let other = after.get(edge).map_or(&[][..], |s| s);
-        assert!(
-            is_same(spans, other),
-            "{}: {ends:?}\n{spans:?}\n{other:?}",
-            scene.name
-        );
+        assert!(is_same(spans, other), "{}: {ends:?}\n{spans:?}\n{other:?}", scene.name);
     }
     let extra = after.keys().find(|e| !before.contains_key(*e));
     let extra = extra.map(|e| e.map(|p| p.map(f64::from_bits)));
@@ -82,11 +67,7 @@ fn moved(scene: &Scene, place: impl Fn(P) -> P, turn: impl Fn(P) -> P) -> Scene 
         up: turn(scene.sight.up),
         near: scene.sight.near,
     };
-    Scene {
-        positions: scene.positions.iter().map(|&p| place(p)).collect(),
-        sight,
-        ..scene.clone()
-    }
+    Scene { positions: scene.positions.iter().map(|&p| place(p)).collect(), sight, ..scene.clone() }
 }
 
 /// Draws `n` scenes before and after `change`; `back` undoes what it does to a vertex.
@@ -115,31 +96,16 @@ fn assert_unchanged(
 
 pub fn turning_scene_and_camera_by_a_right_angle_changes_nothing(solve: Solve) {
     let turn = |p: P| [-p[1], p[0], p[2]];
-    assert_unchanged(
-        solve,
-        1000,
-        |s, _| moved(s, turn, turn),
-        |p| [p[1], -p[0], p[2]],
-    );
+    assert_unchanged(solve, 1000, |s, _| moved(s, turn, turn), |p| [p[1], -p[0], p[2]]);
     let cycle = |p: P| [p[2], p[0], p[1]];
-    assert_unchanged(
-        solve,
-        1100,
-        |s, _| moved(s, cycle, cycle),
-        |p| [p[1], p[2], p[0]],
-    );
+    assert_unchanged(solve, 1100, |s, _| moved(s, cycle, cycle), |p| [p[1], p[2], p[0]]);
 }
 
 pub fn scaling_by_a_power_of_two_changes_nothing(solve: Solve) {
     for k in [-40, 3, 35] {
         let (up, down) = (2f64.powi(k), 2f64.powi(-k));
         let scale = |p: P| p.map(|x| x * up);
-        assert_unchanged(
-            solve,
-            2000,
-            |s, _| moved(s, scale, |p| p),
-            |p| p.map(|x| x * down),
-        );
+        assert_unchanged(solve, 2000, |s, _| moved(s, scale, |p| p), |p| p.map(|x| x * down));
     }
 }
 
@@ -288,19 +254,13 @@ pub fn spans_follow_each_other_without_gaps(solve: Solve) {
 }
 
 fn by_the_oracle(scene: &Scene) -> Option<Vec<EngineEdge>> {
-    let span = |p: &crate::oracle::Piece| EngineSpan {
-        t0: p.t0.to_f64(),
-        t1: p.t1.to_f64(),
-        qi: p.qi,
-    };
+    let span =
+        |p: &crate::oracle::Piece| EngineSpan { t0: p.t0.to_f64(), t1: p.t1.to_f64(), qi: p.qi };
     let edges = truth_of(scene)?;
     Some(
         edges
             .iter()
-            .map(|e| EngineEdge {
-                ends: e.ends,
-                spans: e.pieces.iter().map(span).collect(),
-            })
+            .map(|e| EngineEdge { ends: e.ends, spans: e.pieces.iter().map(span).collect() })
             .collect(),
     )
 }
@@ -317,12 +277,7 @@ fn kinds_do_not_depend_on_the_winding_of_the_whole() {
         for (x, y) in a.iter().zip(&b) {
             // An edge-on face is "not front" on either side, so only the others are compared.
             let crease = |e: &crate::oracle::EdgeTruth| e.crease(30.0);
-            assert_eq!(
-                (x.n_uses, crease(x)),
-                (y.n_uses, crease(y)),
-                "{}",
-                scene.name
-            );
+            assert_eq!((x.n_uses, crease(x)), (y.n_uses, crease(y)), "{}", scene.name);
             assert!(x.n_uses != 1 || x.kinds(30.0) == Some(vec![Kind::Boundary]));
         }
     }

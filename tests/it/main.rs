@@ -2,6 +2,7 @@
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 mod closed_forms;
+mod drawings;
 mod engines;
 mod laws;
 mod oracle;

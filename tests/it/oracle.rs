@@ -224,10 +224,7 @@ impl World {
             }
         };
         Self {
-            points: distinct
-                .iter()
-                .map(|p| p.map(|x| scaled(x, exponent)))
-                .collect(),
+            points: distinct.iter().map(|p| p.map(|x| scaled(x, exponent))).collect(),
             positions: distinct,
             faces,
             exponent,
@@ -269,11 +266,7 @@ impl World {
             }
             if sign(&heights[i]) * sign(&heights[j]) < 0 {
                 // The weights are those of the other end's distance, both positive.
-                let (a, b) = if sign(&heights[i]) > 0 {
-                    (i, j)
-                } else {
-                    (j, i)
-                };
+                let (a, b) = if sign(&heights[i]) > 0 { (i, j) } else { (j, i) };
                 let (of_a, of_b) = (-&heights[b], &heights[a]);
                 kept.push([0, 1, 2, 3].map(|k| &corners[a][k] * &of_a + &corners[b][k] * of_b));
             }
@@ -304,24 +297,12 @@ impl World {
                     1 => plane,
                     _ => negated(plane),
                 };
-                Border {
-                    plane,
-                    inner_corner,
-                }
+                Border { plane, inner_corner }
             })
             .collect();
         let normal_squared = &plane[0] * &plane[0] + &plane[1] * &plane[1] + &plane[2] * &plane[2];
-        let image_box = if boxes {
-            self.image_box(&triangle)
-        } else {
-            None
-        };
-        Some(Cover {
-            borders,
-            plane,
-            normal_squared,
-            image_box,
-        })
+        let image_box = if boxes { self.image_box(&triangle) } else { None };
+        Some(Cover { borders, plane, normal_squared, image_box })
     }
 
     /// A box around the image, a little too large; `None` when a vertex is not well in front.
@@ -402,12 +383,7 @@ impl World {
                 t1 = t1.min(Ratio::new(at_p.clone(), at_p - at_q));
             }
         }
-        (t0 < t1).then_some(Hidden {
-            t0,
-            t1,
-            left,
-            right,
-        })
+        (t0 < t1).then_some(Hidden { t0, t1, left, right })
     }
 
     /// Whether the point with this value in the triangle's plane is at most `tolerance` away.
@@ -436,11 +412,7 @@ impl World {
             (a, b) if a <= 0 && b <= 0 => None,
             (a, _) => {
                 let cut = Ratio::new(at_p.clone(), at_p - at_q);
-                Some(if a > 0 {
-                    (whole.0, cut)
-                } else {
-                    (cut, whole.1)
-                })
+                Some(if a > 0 { (whole.0, cut) } else { (cut, whole.1) })
             }
         }
     }
@@ -460,16 +432,12 @@ impl World {
         let spread = |k: usize| {
             let (low, high) = corners()
                 .map(|p| p[k])
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                    (l.min(x), h.max(x))
-                });
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             high - low
         };
         let size = (0..3).map(spread).fold(0.0, f64::max);
         // The normal's unit is 2^exponent squared; it has the size of an area.
-        let area = normal
-            .clone()
-            .map(|x| Ratio::new(x, Int::ONE).to_f64().abs());
+        let area = normal.clone().map(|x| Ratio::new(x, Int::ONE).to_f64().abs());
         let area = area.iter().fold(0.0, |a: f64, &x| a.max(x));
         area * 2f64.powi(2 * self.exponent) <= 1e-6 * size * largest
     }
@@ -509,11 +477,7 @@ fn pieces(kept: (Ratio, Ratio), hidden: &[Hidden]) -> Vec<Piece> {
         let qi = left.min(right) as u32;
         match pieces.last_mut() {
             Some(last) if last.qi == qi => last.t1 = pair[1].clone(),
-            _ => pieces.push(Piece {
-                t0: pair[0].clone(),
-                t1: pair[1].clone(),
-                qi,
-            }),
+            _ => pieces.push(Piece { t0: pair[0].clone(), t1: pair[1].clone(), qi }),
         }
     }
     pieces
@@ -538,17 +502,11 @@ pub fn truth(
 
     // (lower vertex, higher vertex) → (face, whether it runs from the lower one).
     let mut uses: HashMap<(usize, usize), Vec<(usize, bool)>> = HashMap::new();
-    let normals: Vec<_> = world
-        .faces
-        .iter()
-        .map(|f| newell(&world.points, f))
-        .collect();
+    let normals: Vec<_> = world.faces.iter().map(|f| newell(&world.points, f)).collect();
     for (f, face) in world.faces.iter().enumerate() {
         for (i, &a) in face.iter().enumerate() {
             let b = face[(i + 1) % face.len()];
-            uses.entry((a.min(b), a.max(b)))
-                .or_default()
-                .push((f, a < b));
+            uses.entry((a.min(b), a.max(b))).or_default().push((f, a < b));
         }
     }
 
@@ -561,11 +519,7 @@ pub fn truth(
             if let [(f, f_up), (g, g_up)] = uses[..] {
                 let normal_of_g = normals[g].clone();
                 let flip = f_up == g_up;
-                let normal_of_g = if flip {
-                    normal_of_g.map(|x| -x)
-                } else {
-                    normal_of_g
-                };
+                let normal_of_g = if flip { normal_of_g.map(|x| -x) } else { normal_of_g };
                 let has_area = !is_zero(&normals[f]) && !is_zero(&normals[g]);
                 if !world.is_sliver(f, &normals[f]) && !world.is_sliver(g, &normals[g]) {
                     between = angle(&normals[f], &normal_of_g);
@@ -579,11 +533,8 @@ pub fn truth(
             let (p, q) = (world.point(a), world.point(b));
             let pieces = match world.kept_range(&p, &q) {
                 Some(kept) if !image_is_point => {
-                    let edge_box = if settings.reject_by_boxes {
-                        world.image_box(&[a, b])
-                    } else {
-                        None
-                    };
+                    let edge_box =
+                        if settings.reject_by_boxes { world.image_box(&[a, b]) } else { None };
                     let hidden: Vec<Hidden> = covers
                         .iter()
                         .filter(|c| !are_apart(edge_box, c.image_box))

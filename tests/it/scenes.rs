@@ -19,34 +19,17 @@ pub struct Scene {
 
 /// How many random scenes to run: `n`, or what the environment variable HIDDENLINE_SCENES says.
 pub fn number_of_scenes(n: u64) -> u64 {
-    std::env::var("HIDDENLINE_SCENES")
-        .ok()
-        .and_then(|s| s.parse().ok())
-        .unwrap_or(n)
+    std::env::var("HIDDENLINE_SCENES").ok().and_then(|s| s.parse().ok()).unwrap_or(n)
 }
 
 pub fn orthographic(direction: P, up: P) -> Sight {
-    Sight {
-        eye: [0.0; 3],
-        target: direction,
-        up,
-        near: None,
-    }
+    Sight { eye: [0.0; 3], target: direction, up, near: None }
 }
 
 pub fn perspective(eye: P, target: P, near: f64) -> Sight {
     let forward = [0, 1, 2].map(|i| target[i] - eye[i]);
-    let up = if forward[0] == 0.0 && forward[1] == 0.0 {
-        [0.0, 1.0, 0.0]
-    } else {
-        [0.0, 0.0, 1.0]
-    };
-    Sight {
-        eye,
-        target,
-        up,
-        near: Some(near),
-    }
+    let up = if forward[0] == 0.0 && forward[1] == 0.0 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
+    Sight { eye, target, up, near: Some(near) }
 }
 
 /// splitmix64.
@@ -100,8 +83,7 @@ impl Model {
     pub fn face(&mut self, corners: &[P]) {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(corners);
-        self.faces
-            .push((first..first + corners.len() as u32).collect());
+        self.faces.push((first..first + corners.len() as u32).collect());
     }
 
     /// Six outward squares.
@@ -113,27 +95,14 @@ impl Model {
 
     pub fn seen_by(self, name: impl Into<String>, sight: Sight) -> Scene {
         let (positions, faces) = (self.positions, self.faces);
-        Scene {
-            name: name.into(),
-            positions,
-            faces,
-            sight,
-            is_in_tenths: false,
-        }
+        Scene { name: name.into(), positions, faces, sight, is_in_tenths: false }
     }
 }
 
 fn box_faces(a: P, b: P) -> [[P; 4]; 6] {
     let corner = |i: usize| [0, 1, 2].map(|k| if i >> k & 1 == 0 { a[k] } else { b[k] });
-    [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ]
-    .map(|f| f.map(corner))
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        .map(|f| f.map(corner))
 }
 
 fn plus(p: P, times: f64, d: P) -> P {
@@ -185,11 +154,7 @@ fn add_random_box(rng: &mut Rng, model: &mut Model, boxes: &mut Vec<(P, P)>) {
                 if rng.one_in(2) {
                     (low, size) = (a, [0, 1, 2].map(|k| b[k] - a[k]));
                 }
-                low[axis] = if rng.one_in(2) {
-                    b[axis]
-                } else {
-                    a[axis] - size[axis]
-                };
+                low[axis] = if rng.one_in(2) { b[axis] } else { a[axis] - size[axis] };
             }
             // The same box somewhere along an axis or a diagonal.
             3 => {
@@ -248,16 +213,7 @@ fn add_fin(rng: &mut Rng, model: &mut Model) {
 /// A concave or keyhole polygon in some lattice plane.
 fn add_polygon(rng: &mut Rng, model: &mut Model) {
     let ell: &[[i32; 2]] = &[[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]];
-    let star: &[[i32; 2]] = &[
-        [0, 0],
-        [2, 1],
-        [4, 0],
-        [3, 2],
-        [4, 4],
-        [2, 3],
-        [0, 4],
-        [1, 2],
-    ];
+    let star: &[[i32; 2]] = &[[0, 0], [2, 1], [4, 0], [3, 2], [4, 4], [2, 3], [0, 4], [1, 2]];
     let comb: &[[i32; 2]] = &[
         [0, 0],
         [5, 0],
@@ -272,18 +228,8 @@ fn add_polygon(rng: &mut Rng, model: &mut Model) {
         [1, 3],
         [0, 3],
     ];
-    let keyhole: &[[i32; 2]] = &[
-        [0, 0],
-        [4, 0],
-        [4, 4],
-        [0, 4],
-        [0, 0],
-        [1, 1],
-        [1, 3],
-        [3, 3],
-        [3, 1],
-        [1, 1],
-    ];
+    let keyhole: &[[i32; 2]] =
+        &[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0], [1, 1], [1, 3], [3, 3], [3, 1], [1, 1]];
     let flat_corners: &[[i32; 2]] = &[[0, 0], [1, 0], [2, 0], [2, 2], [1, 2], [0, 2], [0, 1]];
     let shape = rng.pick(&[ell, star, comb, keyhole, flat_corners]);
     let origin = rng.point(-4, 1);
@@ -335,16 +281,8 @@ fn add_doubtful_faces(rng: &mut Rng, model: &mut Model, boxes: &[(P, P)]) {
     if let Some(&(low, high)) = boxes.last() {
         // A triangle on the top of a box, and one standing on it.
         let top = |x: f64, y: f64| [x, y, high[2]];
-        model.face(&[
-            top(low[0], low[1]),
-            top(high[0], low[1]),
-            top(high[0], high[1] + 1.0),
-        ]);
-        model.face(&[
-            top(low[0], low[1]),
-            top(high[0], high[1]),
-            [low[0], low[1], high[2] + 2.0],
-        ]);
+        model.face(&[top(low[0], low[1]), top(high[0], low[1]), top(high[0], high[1] + 1.0)]);
+        model.face(&[top(low[0], low[1]), top(high[0], high[1]), [low[0], low[1], high[2] + 2.0]]);
     }
     if !model.faces.is_empty() {
         let mut again = model.faces[rng.below(model.faces.len())].clone();
@@ -377,9 +315,7 @@ fn random_sight(rng: &mut Rng, model: &Model) -> Sight {
         _ => rng.point(-9, 9),
     };
     let mut forward = match rng.below(7) {
-        0 => rng
-            .pick(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-            .map(|x| -4.0 * x),
+        0 => rng.pick(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).map(|x| -4.0 * x),
         1 => [0; 3].map(|_| rng.pick(&[-1.0, 1.0])),
         2 => difference(vertex(rng), vertex(rng)),
         3..=5 => difference(rng.point(-1, 1), eye),
@@ -391,13 +327,8 @@ fn random_sight(rng: &mut Rng, model: &Model) -> Sight {
     if forward == [0.0; 3] {
         forward = [-1.0, 2.0, -1.0];
     }
-    let ups = [
-        [0.0, 0.0, 1.0],
-        [0.0, 1.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 2.0, 5.0],
-    ];
+    let ups =
+        [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-1.0, 2.0, 5.0]];
     let parallel = |up: P| {
         (0..3).all(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -410,17 +341,9 @@ fn random_sight(rng: &mut Rng, model: &Model) -> Sight {
             break up;
         }
     };
-    let near = if rng.one_in(2) {
-        None
-    } else {
-        Some(rng.pick(&[1e-6, 1e-6, 0.25, 0.5, 1.0, 0.001]))
-    };
-    Sight {
-        eye,
-        target: plus(eye, 1.0, forward),
-        up,
-        near,
-    }
+    let near =
+        if rng.one_in(2) { None } else { Some(rng.pick(&[1e-6, 1e-6, 0.25, 0.5, 1.0, 0.001])) };
+    Sight { eye, target: plus(eye, 1.0, forward), up, near }
 }
 
 /// The same in tenths, so that what was flat, aligned or in contact is so only nearly. Polygons are
@@ -433,11 +356,7 @@ fn in_tenths(scene: Scene) -> Scene {
         .faces
         .iter()
         .filter(|f| f.len() <= 4)
-        .flat_map(|f| {
-            (1..f.len() - 1)
-                .map(|i| vec![f[0], f[i], f[i + 1]])
-                .collect::<Vec<_>>()
-        })
+        .flat_map(|f| (1..f.len() - 1).map(|i| vec![f[0], f[i], f[i + 1]]).collect::<Vec<_>>())
         .collect();
     Scene {
         name: format!("{} in tenths", scene.name),

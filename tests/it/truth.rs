@@ -68,21 +68,12 @@ impl Image {
         let forward = normalized(sight.forward());
         let right = normalized(cross(forward, sight.up));
         let upward = cross(right, forward);
-        Self {
-            sight: *sight,
-            right,
-            upward,
-            forward,
-        }
+        Self { sight: *sight, right, upward, forward }
     }
 
     pub fn of(&self, p: [f64; 3]) -> [f64; 2] {
         let d = [0, 1, 2].map(|i| p[i] - self.sight.eye[i]);
-        let depth = if self.sight.near.is_some() {
-            dot(d, self.forward)
-        } else {
-            1.0
-        };
+        let depth = if self.sight.near.is_some() { dot(d, self.forward) } else { 1.0 };
         [dot(d, self.right) / depth, dot(d, self.upward) / depth]
     }
 
@@ -119,40 +110,23 @@ pub fn compare(
         let (key, spans) = if a < b {
             ([a, b], edge.spans.clone())
         } else {
-            let turned = |s: &EngineSpan| EngineSpan {
-                t0: 1.0 - s.t1,
-                t1: 1.0 - s.t0,
-                qi: s.qi,
-            };
+            let turned = |s: &EngineSpan| EngineSpan { t0: 1.0 - s.t1, t1: 1.0 - s.t0, qi: s.qi };
             ([b, a], edge.spans.iter().rev().map(turned).collect())
         };
-        if found
-            .insert(key.map(|p| p.map(f64::to_bits)), spans)
-            .is_some()
-        {
+        if found.insert(key.map(|p| p.map(f64::to_bits)), spans).is_some() {
             return Err(format!("edge {key:?} is there twice"));
         }
     }
     let mut difference = Difference::default();
     let mut problem = None;
     for edge in truth {
-        let spans = found
-            .remove(&edge.ends.map(|p| p.map(f64::to_bits)))
-            .unwrap_or_default();
+        let spans = found.remove(&edge.ends.map(|p| p.map(f64::to_bits))).unwrap_or_default();
         let pieces: Vec<EngineSpan> = edge
             .pieces
             .iter()
-            .map(|p| EngineSpan {
-                t0: p.t0.to_f64(),
-                t1: p.t1.to_f64(),
-                qi: p.qi,
-            })
+            .map(|p| EngineSpan { t0: p.t0.to_f64(), t1: p.t1.to_f64(), qi: p.qi })
             .collect();
-        let mut cuts: Vec<f64> = spans
-            .iter()
-            .chain(&pieces)
-            .flat_map(|s| [s.t0, s.t1])
-            .collect();
+        let mut cuts: Vec<f64> = spans.iter().chain(&pieces).flat_map(|s| [s.t0, s.t1]).collect();
         cuts.sort_by(f64::total_cmp);
         let mut wrong = 0.0;
         for pair in cuts.windows(2) {
@@ -191,10 +165,7 @@ pub fn compare(
         problem = Some("lengths in the image".into());
     }
     if let Some(edge) = found.keys().next() {
-        problem = Some(format!(
-            "no such edge: {:?}",
-            edge.map(|p| p.map(f64::from_bits))
-        ));
+        problem = Some(format!("no such edge: {:?}", edge.map(|p| p.map(f64::from_bits))));
     }
     match problem {
         None => Ok(difference),
@@ -203,15 +174,9 @@ pub fn compare(
 }
 
 fn in_words(spans: &[EngineSpan]) -> String {
-    let words: Vec<String> = spans
-        .iter()
-        .map(|s| format!("[{:.9}, {:.9}] qi {}", s.t0, s.t1, s.qi))
-        .collect();
-    if words.is_empty() {
-        "nothing".into()
-    } else {
-        words.join(", ")
-    }
+    let words: Vec<String> =
+        spans.iter().map(|s| format!("[{:.9}, {:.9}] qi {}", s.t0, s.t1, s.qi)).collect();
+    if words.is_empty() { "nothing".into() } else { words.join(", ") }
 }
 
 type Segment = [[f64; 2]; 2];
@@ -229,9 +194,7 @@ pub fn visible_segments(
         .filter(|e| selected(e))
         .flat_map(|e| {
             let visible = e.pieces.iter().filter(|p| p.qi == 0);
-            visible
-                .map(|p| [of(e, p.t0.to_f64()), of(e, p.t1.to_f64())])
-                .collect::<Vec<_>>()
+            visible.map(|p| [of(e, p.t0.to_f64()), of(e, p.t1.to_f64())]).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -256,9 +219,7 @@ pub fn compare_strokes(
     let near = 1e-9 * distance(low, high);
     // Each point of a union once: a segment without what the ones before it cover.
     let beyond = |list: &[Segment], others: [&[Segment]; 2]| -> f64 {
-        (0..list.len())
-            .map(|i| uncovered(list[i], [&list[..i], others[0], others[1]], near))
-            .sum()
+        (0..list.len()).map(|i| uncovered(list[i], [&list[..i], others[0], others[1]], near)).sum()
     };
     Difference {
         false_visible: beyond(&drawn, [truth, undecided]),
@@ -288,10 +249,7 @@ fn uncovered(segment: Segment, others: [&[Segment]; 3], near: f64) -> f64 {
         // (along, across) of both ends, cut where the distance across is `near`.
         let local = other.map(|p| {
             let d = [p[0] - a[0], p[1] - a[1]];
-            [
-                d[0] * along[0] + d[1] * along[1],
-                d[1] * along[0] - d[0] * along[1],
-            ]
+            [d[0] * along[0] + d[1] * along[1], d[1] * along[0] - d[0] * along[1]]
         });
         let [p, q] = local;
         let (mut t0, mut t1) = (0.0f64, 1.0f64);
@@ -321,12 +279,7 @@ fn uncovered(segment: Segment, others: [&[Segment]; 3], near: f64) -> f64 {
 
 /// The truth about a scene; `None` with a reason on stderr when it has none.
 pub fn truth_of(scene: &Scene) -> Option<Vec<EdgeTruth>> {
-    match truth(
-        &scene.positions,
-        &scene.faces,
-        &scene.sight,
-        Settings::default(),
-    ) {
+    match truth(&scene.positions, &scene.faces, &scene.sight, Settings::default()) {
         Ok(edges) => Some(edges),
         Err(reason) => {
             eprintln!("{}: {reason}", scene.name);
@@ -345,11 +298,7 @@ fn faultless(truth: &[EdgeTruth]) -> Vec<EngineEdge> {
                 .pieces
                 .iter()
                 .rev()
-                .map(|p| EngineSpan {
-                    t0: 1.0 - p.t1.to_f64(),
-                    t1: 1.0 - p.t0.to_f64(),
-                    qi: p.qi,
-                })
+                .map(|p| EngineSpan { t0: 1.0 - p.t1.to_f64(), t1: 1.0 - p.t0.to_f64(), qi: p.qi })
                 .collect(),
         })
         .collect()
@@ -375,10 +324,7 @@ fn the_oracle_agrees_with_displaced_sight_lines() {
 
 #[test]
 fn boxes_in_the_image_change_nothing() {
-    let boxed = Settings {
-        reject_by_boxes: true,
-        ..Settings::default()
-    };
+    let boxed = Settings { reject_by_boxes: true, ..Settings::default() };
     for seed in 0..number_of_scenes(300) {
         let scene = random(seed);
         let Some(plain) = truth_of(&scene) else {
@@ -423,17 +369,10 @@ fn a_comparison_notices_every_kind_of_error() {
         .unwrap();
     let good = faultless(&edges);
     assert!(compare(&scene.sight, &edges, &good).is_ok());
-    let hidden = good
-        .iter()
-        .position(|e| e.spans.iter().any(|s| s.qi > 0))
-        .unwrap();
+    let hidden = good.iter().position(|e| e.spans.iter().any(|s| s.qi > 0)).unwrap();
     let change = |f: &dyn Fn(&mut EngineSpan)| {
         let mut bad = good.clone();
-        bad[hidden]
-            .spans
-            .iter_mut()
-            .filter(|s| s.qi > 0)
-            .for_each(f);
+        bad[hidden].spans.iter_mut().filter(|s| s.qi > 0).for_each(f);
         compare(&scene.sight, &edges, &bad)
     };
     assert!(change(&|_| {}).is_ok());
@@ -454,13 +393,6 @@ fn a_comparison_notices_every_kind_of_error() {
     assert!(compare_strokes(&segments, &strokes, &[]).is_small());
     strokes.push(vec![a, [b[0] + 1.0, b[1] + 2.0]]);
     assert!(compare_strokes(&segments, &strokes, &[]).false_visible > 1.0);
-    let alone = compare_strokes(
-        &[[[0.0, 0.0], [4.0, 0.0]]],
-        &[vec![[1.0, 0.0], [2.0, 0.0]]],
-        &[],
-    );
-    assert_eq!(
-        (alone.missing, alone.false_visible, alone.total),
-        (3.0, 0.0, 4.0)
-    );
+    let alone = compare_strokes(&[[[0.0, 0.0], [4.0, 0.0]]], &[vec![[1.0, 0.0], [2.0, 0.0]]], &[]);
+    assert_eq!((alone.missing, alone.false_visible, alone.total), (3.0, 0.0, 4.0));
 }

@@ -31,11 +31,8 @@ pub fn decomposed(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let field = ((bits >> 52) & 0x7ff) as i32;
     let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (mantissa, exponent) = if field == 0 {
-        (fraction, -1074)
-    } else {
-        (fraction | (1 << 52), field - 1075)
-    };
+    let (mantissa, exponent) =
+        if field == 0 { (fraction, -1074) } else { (fraction | (1 << 52), field - 1075) };
     let zeros = mantissa.trailing_zeros();
     let odd = mantissa >> zeros;
     (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
@@ -43,22 +40,14 @@ pub fn decomposed(x: f64) -> (i64, i32) {
 
 /// The largest k for which every number is an integer times 2^k; 0 when all are zero.
 pub fn common_exponent(numbers: impl IntoIterator<Item = f64>) -> i32 {
-    let k = numbers
-        .into_iter()
-        .map(|x| decomposed(x).1)
-        .min()
-        .unwrap_or(i32::MAX);
+    let k = numbers.into_iter().map(|x| decomposed(x).1).min().unwrap_or(i32::MAX);
     if k == i32::MAX { 0 } else { k }
 }
 
 /// `x / 2^k`, which must be an integer.
 pub fn scaled(x: f64, k: i32) -> Int {
     let (mantissa, exponent) = decomposed(x);
-    if mantissa == 0 {
-        Int::ZERO
-    } else {
-        Int::from(mantissa) << (exponent - k) as usize
-    }
+    if mantissa == 0 { Int::ZERO } else { Int::from(mantissa) << (exponent - k) as usize }
 }
 
 /// The value of a plane's form at a point.
@@ -72,12 +61,7 @@ pub fn plane_through(a: &Point, b: &Point, c: &Point) -> Plane {
         &a[i] * (&b[j] * &c[k] - &b[k] * &c[j]) - &a[j] * (&b[i] * &c[k] - &b[k] * &c[i])
             + &a[k] * (&b[i] * &c[j] - &b[j] * &c[i])
     };
-    [
-        -minor(1, 2, 3),
-        minor(0, 2, 3),
-        -minor(0, 1, 3),
-        minor(0, 1, 2),
-    ]
+    [-minor(1, 2, 3), minor(0, 2, 3), -minor(0, 1, 3), minor(0, 1, 2)]
 }
 
 pub fn negated(plane: Plane) -> Plane {
@@ -89,11 +73,7 @@ pub fn dot(a: &[Int; 3], b: &[Int; 3]) -> Int {
 }
 
 pub fn cross(a: &[Int; 3], b: &[Int; 3]) -> [Int; 3] {
-    [
-        &a[1] * &b[2] - &a[2] * &b[1],
-        &a[2] * &b[0] - &a[0] * &b[2],
-        &a[0] * &b[1] - &a[1] * &b[0],
-    ]
+    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
 }
 
 pub fn minus(a: &[Int; 3], b: &[Int; 3]) -> [Int; 3] {
@@ -115,22 +95,13 @@ impl Ratio {
     pub fn new(numerator: Int, denominator: Int) -> Self {
         match sign(&denominator) {
             0 => panic!("division by zero in the oracle"),
-            1 => Self {
-                numerator,
-                denominator,
-            },
-            _ => Self {
-                numerator: -numerator,
-                denominator: -denominator,
-            },
+            1 => Self { numerator, denominator },
+            _ => Self { numerator: -numerator, denominator: -denominator },
         }
     }
 
     pub fn integer(x: i32) -> Self {
-        Self {
-            numerator: Int::from(x),
-            denominator: Int::ONE,
-        }
+        Self { numerator: Int::from(x), denominator: Int::ONE }
     }
 
     /// The nearest `f64` but for the last bit.

@@ -28,11 +28,7 @@ fn dot(a: &V, b: &V) -> RBig {
 }
 
 fn cross(a: &V, b: &V) -> V {
-    [
-        &a[1] * &b[2] - &a[2] * &b[1],
-        &a[2] * &b[0] - &a[0] * &b[2],
-        &a[0] * &b[1] - &a[1] * &b[0],
-    ]
+    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
 }
 
 /// How many triangles lie in front of a point just left and just right of t0..t1 on an edge.

@@ -29,10 +29,7 @@ pub fn triangles(points: &[[Int; 3]], face: &[usize]) -> Result<Vec<[usize; 3]>,
         return Ok(Vec::new());
     }
     let first = &points[face[0]];
-    if face
-        .iter()
-        .any(|&v| sign(&dot(&minus(&points[v], first), &normal)) != 0)
-    {
+    if face.iter().any(|&v| sign(&dot(&minus(&points[v], first), &normal)) != 0) {
         return Err("the face is not flat".into());
     }
     let mut done = Vec::new();
@@ -46,9 +43,7 @@ pub fn triangles(points: &[[Int; 3]], face: &[usize]) -> Result<Vec<[usize; 3]>,
             done.push([part[0], part[1], part[2]]);
             continue;
         }
-        let (i, j) = polygon
-            .first_diagonal(&part)
-            .ok_or("the face has no diagonal")?;
+        let (i, j) = polygon.first_diagonal(&part).ok_or("the face has no diagonal")?;
         open.push(part[i..=j].to_vec());
         open.push(part[j..].iter().chain(&part[..=i]).copied().collect());
     }
@@ -63,10 +58,8 @@ struct Polygon<'a> {
 impl Polygon<'_> {
     /// Which way a → b → c turns, seen from the side the normal points to.
     fn turn(&self, a: usize, b: usize, c: usize) -> i32 {
-        let (u, v) = (
-            minus(&self.points[b], &self.points[a]),
-            minus(&self.points[c], &self.points[a]),
-        );
+        let (u, v) =
+            (minus(&self.points[b], &self.points[a]), minus(&self.points[c], &self.points[a]));
         sign(&dot(&cross(&u, &v), &self.normal))
     }
 
@@ -140,16 +133,11 @@ mod tests {
     use super::*;
 
     fn area2_of(points: &[[i32; 2]], face: &[usize]) -> (Int, Int) {
-        let points: Vec<[Int; 3]> = points
-            .iter()
-            .map(|p| [p[0], p[1], p[0] + 2 * p[1]].map(Int::from))
-            .collect();
+        let points: Vec<[Int; 3]> =
+            points.iter().map(|p| [p[0], p[1], p[0] + 2 * p[1]].map(Int::from)).collect();
         let of = |f: &[usize]| newell(&points, f)[2].clone();
         let parts = triangles(&points, face).unwrap();
-        (
-            of(face),
-            parts.iter().map(|t| of(t)).fold(Int::ZERO, |a, b| a + b),
-        )
+        (of(face), parts.iter().map(|t| of(t)).fold(Int::ZERO, |a, b| a + b))
     }
 
     #[test]
@@ -164,25 +152,12 @@ mod tests {
             let (whole, parts) = area2_of(&points, &reversed);
             assert_eq!(whole, parts);
         }
-        let keyhole = [
-            [0, 0],
-            [4, 0],
-            [4, 4],
-            [0, 4],
-            [1, 1],
-            [1, 3],
-            [3, 3],
-            [3, 1],
-        ];
+        let keyhole = [[0, 0], [4, 0], [4, 4], [0, 4], [1, 1], [1, 3], [3, 3], [3, 1]];
         for first in [0, 3] {
             let mut face = vec![0, 1, 2, 3];
             face.rotate_left(first);
             // Bridge from the first corner to a corner of the hole and back.
-            let hole = if first == 0 {
-                [4, 5, 6, 7, 4]
-            } else {
-                [5, 6, 7, 4, 5]
-            };
+            let hole = if first == 0 { [4, 5, 6, 7, 4] } else { [5, 6, 7, 4, 5] };
             let start = face[0];
             face.push(start);
             face.extend(hole);
