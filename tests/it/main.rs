@@ -2,5 +2,11 @@
 
 mod cli;
 mod closed_forms;
+mod drawings;
+mod engines;
+mod laws;
+mod oracle;
+mod scenes;
+mod truth;
 mod views;
 mod writers;

@@ -113,7 +113,8 @@ pub(super) fn shadow(
     }
     let near_signs = if view.near_plane_cuts() {
         let signs = corners.map(|corner| view.sight().near_distance(corner).1);
-        if !signs.contains(&Sign::Positive) {
+        // A triangle in the near plane itself is kept; one that only touches it leaves no area.
+        if !signs.contains(&Sign::Positive) && signs != [Sign::Zero; 3] {
             return None;
         }
         signs
