@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use hashbrown::HashTable;
-use std::hash::BuildHasher;
+use std::hash::{BuildHasher, Hasher};
 
 /// For each position the index of the first one equal to it (−0 is 0). O(n) expected.
 pub(super) fn first_equal_position(positions: &[DVec3]) -> Vec<u32> {
@@ -10,8 +10,13 @@ pub(super) fn first_equal_position(positions: &[DVec3]) -> Vec<u32> {
     // result does not depend on it.
     let hasher = hashbrown::DefaultHashBuilder::default();
     let bits = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
-    let hash = |key: [u64; 3]| hasher.hash_one(key);
-    let mut first: HashTable<u32> = HashTable::new();
+    let hash = |key: [u64; 3]| {
+        let mut state = hasher.build_hasher();
+        key.into_iter().for_each(|word| state.write_u64(word));
+        state.finish()
+    };
+    // Triangle lists repeat each position about six times; other files make the table grow.
+    let mut first: HashTable<u32> = HashTable::with_capacity(positions.len() / 4);
     let mut result = Vec::with_capacity(positions.len());
     for (i, &position) in positions.iter().enumerate() {
         let key = bits(position);

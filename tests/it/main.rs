@@ -1,5 +1,6 @@
 //! All integration tests, in one binary.
 
+<<<<<<< HEAD
 mod cli;
 mod closed_forms;
 mod drawings;
@@ -10,3 +11,6 @@ mod scenes;
 mod truth;
 mod views;
 mod writers;
+=======
+mod readers;
+>>>>>>> 6826fca04af4ff864f78cf00019d31b78c36992e
