@@ -45,7 +45,7 @@ impl OddScaled {
 
 /// The exponents of the lowest and the highest set bit of all non-zero `numbers`, the latter plus
 /// one; `None` when all are zero.
-pub fn bit_range(numbers: impl IntoIterator<Item = f64>) -> Option<(i32, i32)> {
+fn bit_range(numbers: impl IntoIterator<Item = f64>) -> Option<(i32, i32)> {
     numbers
         .into_iter()
         .filter(|&x| x != 0.0)

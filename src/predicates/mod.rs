@@ -32,8 +32,8 @@
 //!
 //! A triple product of differences suffers at most eight roundings a term, so its error is below
 //! 8.01 ε times the sum of the absolute values of its terms (ε = 2⁻⁵³); the code uses 10 ε. This
-//! holds while nothing under- or overflows: coordinates outside that window (a lowest bit below
-//! 2⁻³²⁰ or a size above 2³²⁰) always take the exact path. See Shewchuk, "Adaptive precision
+//! holds while nothing under- or overflows: coordinates below 10⁻⁷⁶ or above 10⁷⁶ in size (and not
+//! zero) always take the exact path. See Shewchuk, "Adaptive precision
 //! floating-point arithmetic and fast robust geometric predicates" (1997), section 4.
 
 pub mod cut;

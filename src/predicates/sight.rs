@@ -16,9 +16,9 @@ pub enum Viewpoint {
     Direction(DVec3),
 }
 
-/// The exponents of the lowest and highest bits of coordinates for which no triple product of
-/// differences under- or overflows.
-const FILTER_WINDOW: (i32, i32) = (-320, 320);
+/// Sizes of coordinates for which no triple product of differences under- or overflows: differences
+/// are then no smaller than 2⁻³⁰⁵ or zero.
+const FILTER_WINDOW: std::ops::RangeInclusive<f64> = 1e-76..=1e76;
 
 /// The points of a scene as one camera sees them; answers every question of [`super`].
 #[derive(Debug)]
@@ -75,13 +75,12 @@ impl<'a> Sight<'a> {
             Projection::Perspective { near, .. } => (Viewpoint::Eye(camera.eye()), near),
             Projection::Orthographic => (Viewpoint::Direction(forward), 0.0),
         };
-        let own = [forward, camera.eye()];
-        let numbers = positions.par_iter().chain(own.par_iter());
-        let range = numbers
-            .filter_map(|p| exact::bit_range(p.to_array()))
-            .reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let in_window =
-            range.is_none_or(|(low, high)| low >= FILTER_WINDOW.0 && high <= FILTER_WINDOW.1);
+        let fits = |p: &DVec3| {
+            let fits = |x: f64| x == 0.0 || FILTER_WINDOW.contains(&x.abs());
+            fits(p.x) && fits(p.y) && fits(p.z)
+        };
+        let in_window = positions.par_iter().with_min_len(1 << 14).all(fits)
+            && [forward, camera.eye()].iter().all(fits);
         Self { positions, viewpoint, forward, near, in_window, n_exact: AtomicU64::new(0) }
     }
 

@@ -89,6 +89,17 @@ fn rounded_up(x: f64) -> f32 {
     if f64::from(rounded) < x { rounded.next_up() } else { rounded }
 }
 
+/// How many triangles make one piece of parallel work.
+const CHUNK: usize = 1 << 14;
+
+/// A triangle on its way into the cells of a level.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    triangle: u32,
+    level: u32,
+    bounds: Bounds,
+}
+
 /// Everything about the view that rounding outwards needs.
 #[derive(Debug, Clone, Copy)]
 struct Rounding {
@@ -183,10 +194,11 @@ impl ImageIndex {
         }
         // Marking pays when few segments are drawn: most triangles then lie far from all of them.
         let marks = (n_segments < n_triangles / 4).then(|| index.mark(segments));
+        let near = index.near_segments(view, marks.as_deref());
         if !settings.count_layers {
-            index.covered_from = index.find_covered_cells(view, settings.contact_tolerance);
+            index.covered_from = index.find_covered_cells(view, &near, settings.contact_tolerance);
         }
-        index.insert(view, marks.as_deref());
+        index.insert(&near, marks.as_deref());
         index
     }
 
@@ -222,15 +234,15 @@ impl ImageIndex {
         marks
     }
 
-    /// Puts the triangles into their cells, leaving out those that are behind everything there.
-    fn insert(&mut self, view: &ViewedScene, marks: Option<&[f64]>) {
+    /// The triangles that lie in a cell with a segment, in their order, and those that the near
+    /// plane cuts.
+    fn near_segments(&mut self, view: &ViewedScene, marks: Option<&[f64]>) -> Vec<Vec<Placed>> {
         let triangles = view.scene().triangles();
         let this = &*self;
-        const CHUNK: usize = 1 << 14;
-        let parts: Vec<(Vec<(u32, Entry)>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
+        let parts: Vec<(Vec<Placed>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
-                let (mut placed, mut everywhere) = (Vec::new(), Vec::new());
+                let (mut near, mut everywhere) = (Vec::new(), Vec::new());
                 let last = ((chunk + 1) * CHUNK).min(triangles.len());
                 for triangle in (chunk * CHUNK) as u32..last as u32 {
                     if view.triangle_turns()[triangle as usize] == Sign::Zero {
@@ -241,26 +253,46 @@ impl ImageIndex {
                         everywhere.push(triangle);
                         continue;
                     };
-                    let Some(level) = this.level_of(&bounds) else {
-                        continue;
-                    };
+                    let Some(level) = this.level_of(&bounds) else { continue };
+                    let mut is_near = false;
                     this.for_box(&this.levels[level], &bounds, |cell| {
+                        is_near |= marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
+                    });
+                    if is_near {
+                        near.push(Placed { triangle, level: level as u32, bounds });
+                    }
+                }
+                (near, everywhere)
+            })
+            .collect();
+        let (near, everywhere): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        self.everywhere = everywhere.concat();
+        near
+    }
+
+    /// Puts the triangles into their cells, leaving out those that are behind everything there.
+    fn insert(&mut self, near: &[Vec<Placed>], marks: Option<&[f64]>) {
+        let this = &*self;
+        let parts: Vec<Vec<(u32, Entry)>> = near
+            .par_iter()
+            .map(|near| {
+                let mut entries = Vec::with_capacity(2 * near.len());
+                for Placed { triangle, level, bounds } in near {
+                    let entry = Entry::new(*triangle, bounds);
+                    this.for_box(&this.levels[*level as usize], bounds, |cell| {
                         let wanted = marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
-                        let seen = this
-                            .covered_from
-                            .get(cell as usize)
-                            .is_none_or(|&depth| bounds.nearest <= depth);
-                        if wanted && seen {
-                            placed.push((cell, Entry::new(triangle, &bounds)));
+                        let covered_from = this.covered_from.get(cell as usize);
+                        if wanted && covered_from.is_none_or(|&depth| bounds.nearest <= depth) {
+                            entries.push((cell, entry));
                         }
                     });
                 }
-                (placed, everywhere)
+                entries
             })
             .collect();
 
-        for (placed, _) in &parts {
-            for &(cell, _) in placed {
+        for entries in &parts {
+            for &(cell, _) in entries {
                 self.starts[cell as usize + 1] += 1;
             }
         }
@@ -269,13 +301,10 @@ impl ImageIndex {
         }
         self.entries = vec![Entry::default(); self.starts.last().map_or(0, |&n| n as usize)];
         let mut next = self.starts.clone();
-        for (placed, everywhere) in &parts {
-            for &(cell, entry) in placed {
-                let slot = &mut next[cell as usize];
-                self.entries[*slot as usize] = entry;
-                *slot += 1;
-            }
-            self.everywhere.extend_from_slice(everywhere);
+        for &(cell, entry) in parts.iter().flatten() {
+            let slot = &mut next[cell as usize];
+            self.entries[*slot as usize] = entry;
+            *slot += 1;
         }
         for level in &mut self.levels {
             let end = level.first + level.columns * level.rows;
@@ -394,23 +423,19 @@ impl ImageIndex {
 
     /// For each cell of every level the smallest depth behind which one triangle, or one for each
     /// of its parts, covers it wholly; infinite where none does.
-    fn find_covered_cells(&self, view: &ViewedScene, contact_tolerance: f64) -> Vec<f64> {
-        let triangles = view.scene().triangles();
-        const CHUNK: usize = 1 << 14;
-        let parts: Vec<Vec<(u32, f64)>> = (0..triangles.len().div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| {
+    fn find_covered_cells(
+        &self,
+        view: &ViewedScene,
+        near: &[Vec<Placed>],
+        contact_tolerance: f64,
+    ) -> Vec<f64> {
+        let parts: Vec<Vec<(u32, f64)>> = near
+            .par_iter()
+            .map(|near| {
                 let mut covered = Vec::new();
-                let last = ((chunk + 1) * CHUNK).min(triangles.len());
-                for triangle in chunk * CHUNK..last {
-                    if view.triangle_turns()[triangle] != Sign::Zero {
-                        self.cells_within(
-                            view,
-                            triangles[triangle],
-                            contact_tolerance,
-                            |cell, depth| covered.push((cell, depth)),
-                        );
-                    }
+                for placed in near.iter().filter(|placed| placed.level >= 2) {
+                    let push = |cell, depth| covered.push((cell, depth));
+                    self.cells_within(view, placed, contact_tolerance, push);
                 }
                 covered
             })
@@ -448,24 +473,17 @@ impl ImageIndex {
     fn cells_within(
         &self,
         view: &ViewedScene,
-        corners: [u32; 3],
+        placed: &Placed,
         contact_tolerance: f64,
         mut f: impl FnMut(u32, f64),
     ) {
-        let Some(bounds) = self.triangle_bounds(view, corners) else {
-            return;
-        };
-        let Some(own) = self.level_of(&bounds) else {
-            return;
-        };
-        if own < 2 {
-            return;
-        }
+        let bounds = &placed.bounds;
+        let corners = view.scene().triangles()[placed.triangle as usize];
         let Some(sine) = sine_of_sight(view, corners) else {
             return;
         };
         let depth = bounds.farthest + contact_tolerance / sine;
-        let level = &self.levels[own - 2];
+        let level = &self.levels[placed.level as usize - 2];
         let points = corners.map(|corner| view.image()[corner as usize].image());
         let margin =
             self.rounding.image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
