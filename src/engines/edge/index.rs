@@ -227,7 +227,8 @@ impl ImageIndex {
         let triangles = view.scene().triangles();
         let this = &*self;
         const CHUNK: usize = 1 << 14;
-        let parts: Vec<(Vec<(u32, Entry)>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
+        type Part = (Vec<(u32, Entry)>, Vec<u32>);
+        let parts: Vec<Part> = (0..triangles.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let (mut placed, mut everywhere) = (Vec::new(), Vec::new());
@@ -402,14 +403,12 @@ impl ImageIndex {
             .map(|chunk| {
                 let mut covered = Vec::new();
                 let last = ((chunk + 1) * CHUNK).min(triangles.len());
-                for triangle in chunk * CHUNK..last {
-                    if view.triangle_turns()[triangle] != Sign::Zero {
-                        self.cells_within(
-                            view,
-                            triangles[triangle],
-                            contact_tolerance,
-                            |cell, depth| covered.push((cell, depth)),
-                        );
+                let turns = &view.triangle_turns()[chunk * CHUNK..last];
+                for (&corners, &turn) in triangles[chunk * CHUNK..last].iter().zip(turns) {
+                    if turn != Sign::Zero {
+                        self.cells_within(view, corners, contact_tolerance, |cell, depth| {
+                            covered.push((cell, depth));
+                        });
                     }
                 }
                 covered
