@@ -1,7 +1,7 @@
 //! The exact path: polynomials in `f64` inputs, evaluated in integers of any size.
 //!
 //! Every finite `f64` is an integer times a power of two. The inputs of one evaluation are brought
-//! to one power of two ([`Lattice`]); if they then have at most 40 bits, a triple product of their
+//! to one power of two (`Lattice`); if they then have at most 40 bits, a triple product of their
 //! differences fits `i128`, which is the usual case of small integer coordinates. Otherwise
 //! arbitrary-size integers take over. Either way the result is the exact value, up to a positive
 //! factor that is the same for all results of one call.

@@ -33,7 +33,7 @@ fn camera(scene: &TestScene) -> Camera {
 }
 
 /// The drawn edges of a scene with their kinds.
-pub fn solve_with(
+pub(crate) fn solve_with(
     scene: &TestScene,
     engine: Engine,
     lines: LineSelection,
@@ -71,15 +71,15 @@ fn all_edges(scene: &TestScene, engine: Engine) -> Option<Vec<EngineEdge>> {
 }
 
 /// All engines by name.
-pub const ALL: [(&str, Solve); 2] = [("roberts", roberts), ("all pairs", all_pairs)];
+pub(crate) const ALL: [(&str, Solve); 2] = [("roberts", roberts), ("all pairs", all_pairs)];
 
 /// Roberts with its index over the image.
-pub fn roberts(scene: &TestScene) -> Option<Vec<EngineEdge>> {
+pub(crate) fn roberts(scene: &TestScene) -> Option<Vec<EngineEdge>> {
     all_edges(scene, Engine::Roberts)
 }
 
 /// Roberts with all pairs.
-pub fn all_pairs(scene: &TestScene) -> Option<Vec<EngineEdge>> {
+pub(crate) fn all_pairs(scene: &TestScene) -> Option<Vec<EngineEdge>> {
     all_edges(scene, Engine::AllPairs)
 }
 

@@ -8,7 +8,7 @@ use crate::truth::{EngineEdge, EngineSpan, truth_of};
 use std::collections::BTreeMap;
 
 /// What an engine says about a scene; `None` when it cannot take it.
-pub type Solve = fn(&Scene) -> Option<Vec<EngineEdge>>;
+pub(crate) type Solve = fn(&Scene) -> Option<Vec<EngineEdge>>;
 
 type Bits = [u64; 3];
 
@@ -94,14 +94,14 @@ fn assert_unchanged(
     assert!(n_drawn > n / 2, "only {n_drawn} of {n} scenes were drawn");
 }
 
-pub fn turning_scene_and_camera_by_a_right_angle_changes_nothing(solve: Solve) {
+pub(crate) fn turning_scene_and_camera_by_a_right_angle_changes_nothing(solve: Solve) {
     let turn = |p: P| [-p[1], p[0], p[2]];
     assert_unchanged(solve, 1000, |s, _| moved(s, turn, turn), |p| [p[1], -p[0], p[2]]);
     let cycle = |p: P| [p[2], p[0], p[1]];
     assert_unchanged(solve, 1100, |s, _| moved(s, cycle, cycle), |p| [p[1], p[2], p[0]]);
 }
 
-pub fn scaling_by_a_power_of_two_changes_nothing(solve: Solve) {
+pub(crate) fn scaling_by_a_power_of_two_changes_nothing(solve: Solve) {
     for k in [-40, 3, 35] {
         let (up, down) = (2f64.powi(k), 2f64.powi(-k));
         let scale = |p: P| p.map(|x| x * up);
@@ -109,19 +109,19 @@ pub fn scaling_by_a_power_of_two_changes_nothing(solve: Solve) {
     }
 }
 
-pub fn mirroring_scene_and_camera_changes_nothing(solve: Solve) {
+pub(crate) fn mirroring_scene_and_camera_changes_nothing(solve: Solve) {
     let mirror = |p: P| [-p[0], p[1], p[2]];
     assert_unchanged(solve, 3000, |s, _| moved(s, mirror, mirror), mirror);
 }
 
-pub fn moving_by_integers_changes_nothing(solve: Solve) {
+pub(crate) fn moving_by_integers_changes_nothing(solve: Solve) {
     let far = [1024.0, -4096.0, 65536.0];
     let place = |p: P| [0, 1, 2].map(|i| p[i] + far[i]);
     let back = |p: P| [0, 1, 2].map(|i| p[i] - far[i]);
     assert_unchanged(solve, 3500, |s, _| moved(s, place, |p| p), back);
 }
 
-pub fn face_order_does_not_matter(solve: Solve) {
+pub(crate) fn face_order_does_not_matter(solve: Solve) {
     let shuffled = |s: &Scene, rng: &mut Rng| {
         let mut s = s.clone();
         rng.shuffle(&mut s.faces);
@@ -130,7 +130,7 @@ pub fn face_order_does_not_matter(solve: Solve) {
     assert_unchanged(solve, 4000, shuffled, |p| p);
 }
 
-pub fn vertex_order_does_not_matter(solve: Solve) {
+pub(crate) fn vertex_order_does_not_matter(solve: Solve) {
     let renumbered = |s: &Scene, rng: &mut Rng| {
         let mut order: Vec<u32> = (0..s.positions.len() as u32).collect();
         rng.shuffle(&mut order);
@@ -151,7 +151,7 @@ pub fn vertex_order_does_not_matter(solve: Solve) {
     assert_unchanged(solve, 5000, renumbered, |p| p);
 }
 
-pub fn winding_does_not_matter_to_what_is_hidden(solve: Solve) {
+pub(crate) fn winding_does_not_matter_to_what_is_hidden(solve: Solve) {
     let turned_over = |s: &Scene, rng: &mut Rng| {
         let mut s = s.clone();
         for face in &mut s.faces {
@@ -164,7 +164,7 @@ pub fn winding_does_not_matter_to_what_is_hidden(solve: Solve) {
     assert_unchanged(solve, 6000, turned_over, |p| p);
 }
 
-pub fn a_wall_behind_everything_changes_nothing(solve: Solve) {
+pub(crate) fn a_wall_behind_everything_changes_nothing(solve: Solve) {
     let n = number_of_scenes(60);
     for seed in 7000..7000 + n {
         let scene = random(seed);
@@ -198,7 +198,7 @@ pub fn a_wall_behind_everything_changes_nothing(solve: Solve) {
 }
 
 /// Every face of a box in four, meeting in its middle; counts are those of the whole faces.
-pub fn splitting_coplanar_faces_changes_nothing(solve: Solve) {
+pub(crate) fn splitting_coplanar_faces_changes_nothing(solve: Solve) {
     let split = |s: &Scene, rng: &mut Rng| {
         let mut model = Model::default();
         for face in &s.faces {
@@ -233,7 +233,7 @@ pub fn splitting_coplanar_faces_changes_nothing(solve: Solve) {
     }
 }
 
-pub fn spans_follow_each_other_without_gaps(solve: Solve) {
+pub(crate) fn spans_follow_each_other_without_gaps(solve: Solve) {
     for seed in 9000..9000 + number_of_scenes(100) {
         let scene = random(seed);
         let Some(edges) = solve(&scene) else { continue };

@@ -7,9 +7,9 @@
 //! The eye is a homogeneous point: (eye, 1) in perspective, (−forward, 0) in orthographic views,
 //! so that one formula serves both.
 
-pub mod exact;
-pub mod ray_cast;
-pub mod triangulate;
+pub(crate) mod exact;
+pub(crate) mod ray_cast;
+pub(crate) mod triangulate;
 
 use exact::{
     Int, Plane, Point, Ratio, common_exponent, cross, decomposed, dot, is_zero, minus, negated,
@@ -20,7 +20,7 @@ use triangulate::{newell, triangles};
 
 /// The camera's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub(crate) struct Sight {
     pub eye: [f64; 3],
     pub target: [f64; 3],
     pub up: [f64; 3],
@@ -30,14 +30,14 @@ pub struct Sight {
 
 impl Sight {
     /// `target − eye`, rounded once; exact from here on.
-    pub fn forward(&self) -> [f64; 3] {
+    pub(crate) fn forward(&self) -> [f64; 3] {
         [0, 1, 2].map(|i| self.target[i] - self.eye[i])
     }
 }
 
 /// What an edge is, before any option selects it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub(crate) enum Kind {
     Boundary,
     Nonmanifold,
     Silhouette,
@@ -47,7 +47,7 @@ pub enum Kind {
 
 /// The angle between the normals of an edge's two faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Angle {
+pub(crate) enum Angle {
     /// Exactly none.
     Zero,
     Cosine(f64),
@@ -57,7 +57,7 @@ pub enum Angle {
 
 /// A maximal part of an edge with one count of covering triangles.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Piece {
+pub(crate) struct Piece {
     pub t0: Ratio,
     pub t1: Ratio,
     /// The smaller count of its two sides; 0 is visible.
@@ -66,7 +66,7 @@ pub struct Piece {
 
 /// Everything the definition says about one edge.
 #[derive(Clone, Debug)]
-pub struct EdgeTruth {
+pub(crate) struct EdgeTruth {
     /// Its two ends, the smaller first (by x, then y, then z); t runs from the first.
     pub ends: [[f64; 3]; 2],
     /// How many times the border of a face runs along it.
@@ -81,7 +81,7 @@ pub struct EdgeTruth {
 
 impl EdgeTruth {
     /// Whether the edge is a crease; `None` when that cannot be told.
-    pub fn crease(&self, threshold_deg: f64) -> Option<bool> {
+    pub(crate) fn crease(&self, threshold_deg: f64) -> Option<bool> {
         match self.angle {
             Angle::Zero => Some(false),
             Angle::Cosine(cosine) => {
@@ -93,7 +93,7 @@ impl EdgeTruth {
     }
 
     /// All kinds that apply, the one to be written first; `None` when that cannot be told.
-    pub fn kinds(&self, threshold_deg: f64) -> Option<Vec<Kind>> {
+    pub(crate) fn kinds(&self, threshold_deg: f64) -> Option<Vec<Kind>> {
         match self.n_uses {
             1 => return Some(vec![Kind::Boundary]),
             2 => {}
@@ -115,7 +115,7 @@ impl EdgeTruth {
 
 /// How the truth is computed.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// A triangle does not cover an edge both of whose ends lie within this distance of its plane.
     pub contact_tolerance: f64,
     /// Leaves out pairs whose boxes in the image, computed in `f64`, are clearly apart: by a
@@ -155,7 +155,7 @@ struct Hidden {
 }
 
 /// A scene turned into integers.
-pub struct World {
+pub(crate) struct World {
     /// Distinct positions, in order of appearance.
     pub positions: Vec<[f64; 3]>,
     points: Vec<[Int; 3]>,
@@ -170,7 +170,7 @@ pub struct World {
 }
 
 impl World {
-    pub fn new(positions: &[[f64; 3]], faces: &[Vec<u32>], sight: &Sight) -> Self {
+    pub(crate) fn new(positions: &[[f64; 3]], faces: &[Vec<u32>], sight: &Sight) -> Self {
         let mut of_position: HashMap<[u64; 3], usize> = HashMap::new();
         let mut distinct: Vec<[f64; 3]> = Vec::new();
         let vertex_of: Vec<usize> = positions
@@ -243,7 +243,7 @@ impl World {
     ///
     /// # Errors
     /// A polygon that is not flat or crosses itself.
-    pub fn triangles(&self) -> Result<Vec<[usize; 3]>, String> {
+    pub(crate) fn triangles(&self) -> Result<Vec<[usize; 3]>, String> {
         let mut all = Vec::new();
         for face in &self.faces {
             all.extend(triangles(&self.points, face)?);
@@ -487,7 +487,7 @@ fn pieces(kept: (Ratio, Ratio), hidden: &[Hidden]) -> Vec<Piece> {
 ///
 /// # Errors
 /// A polygon that is not flat or crosses itself: what covers is not defined by its border alone.
-pub fn truth(
+pub(crate) fn truth(
     positions: &[[f64; 3]],
     faces: &[Vec<u32>],
     sight: &Sight,

@@ -117,7 +117,8 @@ fn real_models_have_the_counts_of_their_index() {
     let mut n_models = 0;
     for row in index.lines().skip(1) {
         let columns: Vec<_> = row.split('\t').collect();
-        let (Ok(vertices), Ok(faces)) = (columns[3].parse(), columns[4].parse::<usize>()) else {
+        let (Ok(vertices), Ok(faces)) = (columns[3].parse::<usize>(), columns[4].parse::<usize>())
+        else {
             continue;
         };
         // The index counts the vertices of an OBJ file before equal ones are welded.

@@ -4,11 +4,11 @@
 
 use crate::oracle::Sight;
 
-pub type P = [f64; 3];
+pub(crate) type P = [f64; 3];
 
 /// A model and a camera.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub(crate) struct Scene {
     pub name: String,
     pub positions: Vec<P>,
     pub faces: Vec<Vec<u32>>,
@@ -18,25 +18,25 @@ pub struct Scene {
 }
 
 /// How many random scenes to run: `n`, or what the environment variable HIDDENLINE_SCENES says.
-pub fn number_of_scenes(n: u64) -> u64 {
+pub(crate) fn number_of_scenes(n: u64) -> u64 {
     std::env::var("HIDDENLINE_SCENES").ok().and_then(|s| s.parse().ok()).unwrap_or(n)
 }
 
-pub fn orthographic(direction: P, up: P) -> Sight {
+pub(crate) fn orthographic(direction: P, up: P) -> Sight {
     Sight { eye: [0.0; 3], target: direction, up, near: None }
 }
 
-pub fn perspective(eye: P, target: P, near: f64) -> Sight {
+pub(crate) fn perspective(eye: P, target: P, near: f64) -> Sight {
     let forward = [0, 1, 2].map(|i| target[i] - eye[i]);
     let up = if forward[0] == 0.0 && forward[1] == 0.0 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
     Sight { eye, target, up, near: Some(near) }
 }
 
 /// splitmix64.
-pub struct Rng(pub u64);
+pub(crate) struct Rng(pub u64);
 
 impl Rng {
-    pub fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -44,28 +44,28 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
     /// An integer from `low` to `high`, both included.
-    pub fn integer(&mut self, low: i32, high: i32) -> f64 {
+    pub(crate) fn integer(&mut self, low: i32, high: i32) -> f64 {
         f64::from(low + self.below((high - low + 1) as usize) as i32)
     }
 
-    pub fn one_in(&mut self, n: usize) -> bool {
+    pub(crate) fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
 
-    pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
+    pub(crate) fn pick<T: Copy>(&mut self, of: &[T]) -> T {
         of[self.below(of.len())]
     }
 
-    pub fn point(&mut self, low: i32, high: i32) -> P {
+    pub(crate) fn point(&mut self, low: i32, high: i32) -> P {
         [0; 3].map(|_| self.integer(low, high))
     }
 
-    pub fn shuffle<T>(&mut self, list: &mut [T]) {
+    pub(crate) fn shuffle<T>(&mut self, list: &mut [T]) {
         for i in (1..list.len()).rev() {
             list.swap(i, self.below(i + 1));
         }
@@ -74,26 +74,26 @@ impl Rng {
 
 /// Positions and faces in the making; vertices of different objects are not shared.
 #[derive(Default)]
-pub struct Model {
+pub(crate) struct Model {
     pub positions: Vec<P>,
     pub faces: Vec<Vec<u32>>,
 }
 
 impl Model {
-    pub fn face(&mut self, corners: &[P]) {
+    pub(crate) fn face(&mut self, corners: &[P]) {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(corners);
         self.faces.push((first..first + corners.len() as u32).collect());
     }
 
     /// Six outward squares.
-    pub fn add_box(&mut self, a: P, b: P) {
+    pub(crate) fn add_box(&mut self, a: P, b: P) {
         for corners in box_faces(a, b) {
             self.face(&corners);
         }
     }
 
-    pub fn seen_by(self, name: impl Into<String>, sight: Sight) -> Scene {
+    pub(crate) fn seen_by(self, name: impl Into<String>, sight: Sight) -> Scene {
         let (positions, faces) = (self.positions, self.faces);
         Scene { name: name.into(), positions, faces, sight, is_in_tenths: false }
     }
@@ -110,7 +110,7 @@ fn plus(p: P, times: f64, d: P) -> P {
 }
 
 /// A few objects and a camera, all decided by the seed.
-pub fn random(seed: u64) -> Scene {
+pub(crate) fn random(seed: u64) -> Scene {
     let mut rng = Rng(seed);
     let mut model = Model::default();
     let mut boxes: Vec<(P, P)> = Vec::new();

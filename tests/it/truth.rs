@@ -6,7 +6,7 @@ use crate::scenes::{Scene, number_of_scenes, random};
 
 /// What an engine says about one part of an edge; t runs from the smaller end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EngineSpan {
+pub(crate) struct EngineSpan {
     pub t0: f64,
     pub t1: f64,
     pub qi: u32,
@@ -14,7 +14,7 @@ pub struct EngineSpan {
 
 /// What an engine says about one edge.
 #[derive(Clone, Debug)]
-pub struct EngineEdge {
+pub(crate) struct EngineEdge {
     /// Its ends in either order; spans run from the first.
     pub ends: [[f64; 3]; 2],
     pub spans: Vec<EngineSpan>,
@@ -22,7 +22,7 @@ pub struct EngineEdge {
 
 /// Lengths in the image.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Difference {
+pub(crate) struct Difference {
     /// Drawn, but hidden in truth.
     pub false_visible: f64,
     /// Visible in truth, but not drawn.
@@ -34,13 +34,13 @@ pub struct Difference {
 }
 
 impl Difference {
-    pub fn is_small(&self) -> bool {
+    pub(crate) fn is_small(&self) -> bool {
         self.false_visible + self.missing <= 1e-9 * self.total + 1e-12 * self.largest
     }
 }
 
 /// Image coordinates in `f64`.
-pub struct Image {
+pub(crate) struct Image {
     sight: Sight,
     right: [f64; 3],
     upward: [f64; 3],
@@ -64,25 +64,25 @@ fn normalized(a: [f64; 3]) -> [f64; 3] {
 }
 
 impl Image {
-    pub fn new(sight: &Sight) -> Self {
+    pub(crate) fn new(sight: &Sight) -> Self {
         let forward = normalized(sight.forward());
         let right = normalized(cross(forward, sight.up));
         let upward = cross(right, forward);
         Self { sight: *sight, right, upward, forward }
     }
 
-    pub fn of(&self, p: [f64; 3]) -> [f64; 2] {
+    pub(crate) fn of(&self, p: [f64; 3]) -> [f64; 2] {
         let d = [0, 1, 2].map(|i| p[i] - self.sight.eye[i]);
         let depth = if self.sight.near.is_some() { dot(d, self.forward) } else { 1.0 };
         [dot(d, self.right) / depth, dot(d, self.upward) / depth]
     }
 
-    pub fn at(&self, ends: [[f64; 3]; 2], t: f64) -> [f64; 2] {
+    pub(crate) fn at(&self, ends: [[f64; 3]; 2], t: f64) -> [f64; 2] {
         // Both ends exact, so that edges meet in the image where they do in space.
         self.of([0, 1, 2].map(|i| ends[0][i] * (1.0 - t) + ends[1][i] * t))
     }
 
-    pub fn length(&self, ends: [[f64; 3]; 2], t0: f64, t1: f64) -> f64 {
+    pub(crate) fn length(&self, ends: [[f64; 3]; 2], t0: f64, t1: f64) -> f64 {
         distance(self.at(ends, t0), self.at(ends, t1))
     }
 }
@@ -98,7 +98,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 ///
 /// # Errors
 /// What differs, in words.
-pub fn compare(
+pub(crate) fn compare(
     sight: &Sight,
     truth: &[EdgeTruth],
     engine: &[EngineEdge],
@@ -182,7 +182,7 @@ fn in_words(spans: &[EngineSpan]) -> String {
 type Segment = [[f64; 2]; 2];
 
 /// The visible segments of the edges that `selected` takes.
-pub fn visible_segments(
+pub(crate) fn visible_segments(
     sight: &Sight,
     truth: &[EdgeTruth],
     selected: impl Fn(&EdgeTruth) -> bool,
@@ -201,7 +201,7 @@ pub fn visible_segments(
 
 /// Compares two drawings as unions of points; points nearer than 1e-9 of the diagonal are one.
 /// Segments of `undecided` may be drawn or not.
-pub fn compare_strokes(
+pub(crate) fn compare_strokes(
     truth: &[Segment],
     strokes: &[Vec<[f64; 2]>],
     undecided: &[Segment],
@@ -278,7 +278,7 @@ fn uncovered(segment: Segment, others: [&[Segment]; 3], near: f64) -> f64 {
 }
 
 /// The truth about a scene; `None` with a reason on stderr when it has none.
-pub fn truth_of(scene: &Scene) -> Option<Vec<EdgeTruth>> {
+pub(crate) fn truth_of(scene: &Scene) -> Option<Vec<EdgeTruth>> {
     match truth(&scene.positions, &scene.faces, &scene.sight, Settings::default()) {
         Ok(edges) => Some(edges),
         Err(reason) => {

@@ -250,7 +250,8 @@ impl ImageIndex {
     fn near_segments(&mut self, view: &ViewedScene, marks: Option<&[f64]>) -> Vec<Vec<Placed>> {
         let triangles = view.scene().triangles();
         let this = &*self;
-        let parts: Vec<(Vec<Placed>, Vec<u32>)> = (0..triangles.len().div_ceil(CHUNK))
+        type Part = (Vec<Placed>, Vec<u32>);
+        let parts: Vec<Part> = (0..triangles.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let (mut near, mut everywhere) = (Vec::new(), Vec::new());
@@ -669,7 +670,7 @@ impl Visitor {
                     *last = number;
                     let corners = view.scene().triangles()[triangle as usize];
                     let points = corners.map(|corner| view.image()[corner as usize]);
-                    !separation.apart(points) && test(triangle)
+                    !separation.apart(corners, points) && test(triangle)
                 })
             })
         })
@@ -677,8 +678,12 @@ impl Visitor {
 }
 
 /// A quick test that a triangle's image lies to one side of a segment's line.
+///
+/// A corner that is one of the segment's own ends lies on the line and does not count: a triangle
+/// that meets the line there only covers no more than a point.
 struct Separation<'i> {
     rounding: &'i Rounding,
+    ends: [u32; 2],
     start: DVec2,
     along: DVec2,
     size: f64,
@@ -689,6 +694,7 @@ impl<'i> Separation<'i> {
         let [a, b] = segment.image;
         Self {
             rounding: &index.rounding,
+            ends: segment.ends,
             start: a,
             along: b - a,
             size: bounds.low.abs().max(bounds.high.abs()).element_sum(),
@@ -696,17 +702,22 @@ impl<'i> Separation<'i> {
     }
 
     #[inline]
-    fn apart(&self, points: [ImagePoint; 3]) -> bool {
+    fn apart(&self, corners: [u32; 3], points: [ImagePoint; 3]) -> bool {
         let points = points.map(ImagePoint::image);
-        let low = points[0].min(points[1]).min(points[2]);
-        let high = points[0].max(points[1]).max(points[2]);
-        let size = low.abs().max(high.abs()).element_sum().max(self.size);
-        let error = self.rounding.image_error(size);
-        // Each factor of the area is off by two errors at most.
         let offsets = points.map(|p| p - self.start);
+        let farthest = points.iter().fold(DVec2::ZERO, |far, p| far.max(p.abs()));
+        let error = self.rounding.image_error(farthest.element_sum().max(self.size));
         let reach = offsets.iter().fold(self.along.abs(), |reach, d| reach.max(d.abs()));
+        // Each factor of the area is off by two errors at most.
         let slack = 8.0 * error * (reach.element_sum() + error);
-        let sides = offsets.map(|offset| self.along.perp_dot(offset));
-        sides.iter().all(|&side| side > slack) || sides.iter().all(|&side| side < -slack)
+        let (mut left, mut right) = (true, true);
+        for (corner, offset) in corners.into_iter().zip(offsets) {
+            if corner != self.ends[0] && corner != self.ends[1] {
+                let side = self.along.perp_dot(offset);
+                left &= side > slack;
+                right &= side < -slack;
+            }
+        }
+        left || right
     }
 }

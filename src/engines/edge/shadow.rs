@@ -124,6 +124,22 @@ pub(super) fn shadow(
 
     let sight = view.sight();
     let mut range = Range { from: segment.from, to: segment.to };
+    // Depth first: it rules out all that lies behind.
+    let plane = sight.triangle_plane(corners);
+    let [a, b] = ends.map(|end| sight.depth_at(&plane, corners, end));
+    let signs = [a.1.times(turn), b.1.times(turn)];
+    let in_plane = signs == [Sign::Zero; 2];
+    if in_plane {
+        if !find_doubled {
+            return None;
+        }
+    } else {
+        let cut = || sight.cut(ends, CutPlane::Triangle(corners), [a.0, b.0]);
+        if !range.keep(view, ends, signs, cut) {
+            return None;
+        }
+    }
+
     let mut along: Option<usize> = None;
     for side in 0..3 {
         let (p, q) = (corners[side], corners[(side + 1) % 3]);
@@ -137,21 +153,6 @@ pub(super) fn shadow(
             if !range.keep(view, ends, signs, cut) {
                 return None;
             }
-        }
-    }
-
-    let plane = sight.triangle_plane(corners);
-    let [a, b] = ends.map(|end| sight.depth_at(&plane, corners, end));
-    let signs = [a.1.times(turn), b.1.times(turn)];
-    let in_plane = signs == [Sign::Zero; 2];
-    if in_plane {
-        if !find_doubled || along.is_none() {
-            return None;
-        }
-    } else {
-        let cut = || sight.cut(ends, CutPlane::Triangle(corners), [a.0, b.0]);
-        if !range.keep(view, ends, signs, cut) {
-            return None;
         }
     }
 
@@ -181,6 +182,7 @@ pub(super) fn shadow(
     let cover = Cover { from: range.from, to: range.to, sides };
     let border = along.map(|side| [corners[side], corners[(side + 1) % 3]]);
     if in_plane {
+        // A segment in the triangle's plane shares its image with it only along a border.
         return border.map(|border| Shadow::OnBorder(cover, border));
     }
     if contact_tolerance > 0.0 && sight.in_contact(corners, ends, contact_tolerance) {

@@ -5,16 +5,16 @@ use dashu_int::ops::BitTest;
 use std::cmp::Ordering;
 
 /// An integer of any size.
-pub type Int = IBig;
+pub(crate) type Int = IBig;
 
 /// A point (x, y, z, w) with w > 0 standing for (x/w, y/w, z/w), or a direction with w = 0.
-pub type Point = [Int; 4];
+pub(crate) type Point = [Int; 4];
 
 /// The linear form p ↦ c·p; a plane, with the sign of its value telling the side.
-pub type Plane = [Int; 4];
+pub(crate) type Plane = [Int; 4];
 
 /// −1, 0 or 1.
-pub fn sign(x: &Int) -> i32 {
+pub(crate) fn sign(x: &Int) -> i32 {
     match x.cmp(&Int::ZERO) {
         Ordering::Less => -1,
         Ordering::Equal => 0,
@@ -23,7 +23,7 @@ pub fn sign(x: &Int) -> i32 {
 }
 
 /// `x = mantissa · 2^exponent`, the mantissa odd or zero.
-pub fn decomposed(x: f64) -> (i64, i32) {
+pub(crate) fn decomposed(x: f64) -> (i64, i32) {
     assert!(x.is_finite());
     if x == 0.0 {
         return (0, i32::MAX);
@@ -39,24 +39,24 @@ pub fn decomposed(x: f64) -> (i64, i32) {
 }
 
 /// The largest k for which every number is an integer times 2^k; 0 when all are zero.
-pub fn common_exponent(numbers: impl IntoIterator<Item = f64>) -> i32 {
+pub(crate) fn common_exponent(numbers: impl IntoIterator<Item = f64>) -> i32 {
     let k = numbers.into_iter().map(|x| decomposed(x).1).min().unwrap_or(i32::MAX);
     if k == i32::MAX { 0 } else { k }
 }
 
 /// `x / 2^k`, which must be an integer.
-pub fn scaled(x: f64, k: i32) -> Int {
+pub(crate) fn scaled(x: f64, k: i32) -> Int {
     let (mantissa, exponent) = decomposed(x);
     if mantissa == 0 { Int::ZERO } else { Int::from(mantissa) << (exponent - k) as usize }
 }
 
 /// The value of a plane's form at a point.
-pub fn value(plane: &Plane, p: &Point) -> Int {
+pub(crate) fn value(plane: &Plane, p: &Point) -> Int {
     &plane[0] * &p[0] + &plane[1] * &p[1] + &plane[2] * &p[2] + &plane[3] * &p[3]
 }
 
 /// The form x ↦ det(a, b, c, x): zero on the plane through the three points.
-pub fn plane_through(a: &Point, b: &Point, c: &Point) -> Plane {
+pub(crate) fn plane_through(a: &Point, b: &Point, c: &Point) -> Plane {
     let minor = |i: usize, j: usize, k: usize| {
         &a[i] * (&b[j] * &c[k] - &b[k] * &c[j]) - &a[j] * (&b[i] * &c[k] - &b[k] * &c[i])
             + &a[k] * (&b[i] * &c[j] - &b[j] * &c[i])
@@ -64,35 +64,35 @@ pub fn plane_through(a: &Point, b: &Point, c: &Point) -> Plane {
     [-minor(1, 2, 3), minor(0, 2, 3), -minor(0, 1, 3), minor(0, 1, 2)]
 }
 
-pub fn negated(plane: Plane) -> Plane {
+pub(crate) fn negated(plane: Plane) -> Plane {
     plane.map(|c| -c)
 }
 
-pub fn dot(a: &[Int; 3], b: &[Int; 3]) -> Int {
+pub(crate) fn dot(a: &[Int; 3], b: &[Int; 3]) -> Int {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-pub fn cross(a: &[Int; 3], b: &[Int; 3]) -> [Int; 3] {
+pub(crate) fn cross(a: &[Int; 3], b: &[Int; 3]) -> [Int; 3] {
     [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
 }
 
-pub fn minus(a: &[Int; 3], b: &[Int; 3]) -> [Int; 3] {
+pub(crate) fn minus(a: &[Int; 3], b: &[Int; 3]) -> [Int; 3] {
     [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
 }
 
-pub fn is_zero(v: &[Int; 3]) -> bool {
+pub(crate) fn is_zero(v: &[Int; 3]) -> bool {
     v.iter().all(|x| sign(x) == 0)
 }
 
 /// A fraction; the denominator is positive, common factors may remain.
 #[derive(Clone, Debug)]
-pub struct Ratio {
+pub(crate) struct Ratio {
     pub numerator: Int,
     pub denominator: Int,
 }
 
 impl Ratio {
-    pub fn new(numerator: Int, denominator: Int) -> Self {
+    pub(crate) fn new(numerator: Int, denominator: Int) -> Self {
         match sign(&denominator) {
             0 => panic!("division by zero in the oracle"),
             1 => Self { numerator, denominator },
@@ -100,12 +100,12 @@ impl Ratio {
         }
     }
 
-    pub fn integer(x: i32) -> Self {
+    pub(crate) fn integer(x: i32) -> Self {
         Self { numerator: Int::from(x), denominator: Int::ONE }
     }
 
     /// The nearest `f64` but for the last bit.
-    pub fn to_f64(&self) -> f64 {
+    pub(crate) fn to_f64(&self) -> f64 {
         if sign(&self.numerator) == 0 {
             return 0.0;
         }

@@ -92,7 +92,7 @@ fn counts_beside(world: &World, ends: [[f64; 3]; 2], t0: &Ratio, t1: &Ratio) -> 
 ///
 /// # Errors
 /// The first piece whose count differs, in words.
-pub fn agrees_with(
+pub(crate) fn agrees_with(
     positions: &[[f64; 3]],
     faces: &[Vec<u32>],
     sight: &Sight,

@@ -3,13 +3,13 @@
 use super::exact::{Int, cross, dot, is_zero, minus, sign};
 
 /// Newell's sum over the border.
-pub fn newell(points: &[[Int; 3]], face: &[usize]) -> [Int; 3] {
+pub(crate) fn newell(points: &[[Int; 3]], face: &[usize]) -> [Int; 3] {
     let mut normal = [Int::ZERO, Int::ZERO, Int::ZERO];
     for (i, &from) in face.iter().enumerate() {
         let (p, q) = (&points[from], &points[face[(i + 1) % face.len()]]);
-        for axis in 0..3 {
+        for (axis, sum) in normal.iter_mut().enumerate() {
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            normal[axis] += (&p[u] - &q[u]) * (&p[v] + &q[v]);
+            *sum += (&p[u] - &q[u]) * (&p[v] + &q[v]);
         }
     }
     normal
@@ -23,7 +23,7 @@ pub fn newell(points: &[[Int; 3]], face: &[usize]) -> [Int; 3] {
 ///
 /// # Errors
 /// A polygon that is not flat, or whose border crosses itself.
-pub fn triangles(points: &[[Int; 3]], face: &[usize]) -> Result<Vec<[usize; 3]>, String> {
+pub(crate) fn triangles(points: &[[Int; 3]], face: &[usize]) -> Result<Vec<[usize; 3]>, String> {
     let normal = newell(points, face);
     if is_zero(&normal) {
         return Ok(Vec::new());
@@ -118,13 +118,9 @@ impl Polygon<'_> {
             // On one line without an inner corner: the side covers a–b, or misses it.
             return self.between(c, d, a) && self.between(c, d, b);
         }
-        // Ends on the line are a, b or outside; what is left is a proper crossing.
-        at_c * at_d < 0 && self.turn(c, d, a) * self.turn(c, d, b) < 0
-            || at_c * at_d < 0 && {
-                // The side passes through an end of the diagonal that is no corner of the side.
-                let on = |x: usize| self.turn(c, d, x) == 0;
-                on(a) || on(b)
-            }
+        // Ends on the line are a, b or outside; what is left is a proper crossing, or a side that
+        // passes through an end of the diagonal that is no corner of the side.
+        at_c * at_d < 0 && self.turn(c, d, a) * self.turn(c, d, b) <= 0
     }
 }
 
