@@ -6,6 +6,7 @@ mod cli;
 mod closed_forms;
 mod drawings;
 mod engines;
+mod gallery;
 mod laws;
 mod oracle;
 mod readers;

@@ -1,0 +1,140 @@
+//! How long each stage takes on a bumpy sphere of 10 thousand, 100 thousand and a million
+//! triangles.
+//!
+//! `cargo bench` runs all; `cargo bench --bench stages -- visibility` only some.
+
+use std::f64::consts::{PI, TAU};
+use std::io::{Write, sink};
+
+use divan::{Bencher, black_box};
+use glam::{DVec3, dvec3};
+use libm::{cos, sin};
+
+use hiddenline::chain::{ChainOptions, chain};
+use hiddenline::classify::{LineSelection, ViewedScene};
+use hiddenline::draw::HiddenLines;
+use hiddenline::engines::edge::{Engine, Settings, solve};
+use hiddenline::mesh::Mesh;
+use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::read::{ModelFormat, read_bytes};
+use hiddenline::scene::Scene;
+use hiddenline::strokes::StrokeKind;
+use hiddenline::topology::Topology;
+use hiddenline::view::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
+use hiddenline::writers::svg::{self, StrokeElement};
+
+fn main() {
+    divan::main();
+}
+
+/// Numbers of points along the equator; the mesh has about as many triangles as its square.
+const SIZES: [u32; 3] = [100, 316, 1000];
+
+/// A sphere with bumps, open at its poles: `n (n − 2)` triangles, as an OBJ file.
+fn bumpy_sphere(n: u32) -> Vec<u8> {
+    let rows = n / 2;
+    let mut obj = Vec::new();
+    for i in 0..n {
+        let u = TAU * f64::from(i) / f64::from(n);
+        for j in 0..rows {
+            let v = 0.02 + (PI - 0.04) * f64::from(j) / f64::from(rows - 1);
+            let r = 1.0 + 0.12 * sin(9.0 * u) * sin(7.0 * v) + 0.04 * sin(31.0 * u + 3.0 * v);
+            let DVec3 { x, y, z } = r * dvec3(sin(v) * cos(u), sin(v) * sin(u), cos(v));
+            writeln!(obj, "v {x:.9} {y:.9} {z:.9}").expect("memory takes everything");
+        }
+    }
+    for i in 0..n {
+        for j in 1..rows {
+            // OBJ counts from 1.
+            let (a, b) = (i * rows + j, (i + 1) % n * rows + j);
+            writeln!(obj, "f {a} {} {}\nf {a} {} {b}", a + 1, b + 1, b + 1)
+                .expect("memory takes everything");
+        }
+    }
+    obj
+}
+
+fn read(obj: &[u8]) -> Mesh {
+    read_bytes("sphere.obj", obj, Some(ModelFormat::Obj)).expect("a sphere").mesh
+}
+
+fn camera() -> Camera {
+    let projection = Projection::Perspective { fov_deg: DEFAULT_FOV_DEG, near: DEFAULT_NEAR };
+    Camera::new(dvec3(4.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, projection).expect("a camera")
+}
+
+fn outlines() -> LineSelection {
+    LineSelection::NONE.with(StrokeKind::Silhouette).with(StrokeKind::Boundary)
+}
+
+fn settings() -> Settings {
+    Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: true }
+}
+
+fn chaining() -> ChainOptions {
+    ChainOptions { hidden: false, exact: false, apart_by_kind: false, shortest: 0.0 }
+}
+
+fn view(scene: &Scene, lines: LineSelection) -> ViewedScene<'_> {
+    ViewedScene::new(scene, &camera(), lines, 30.0)
+}
+
+#[divan::bench(args = SIZES)]
+fn a_read_obj(bencher: Bencher, n: u32) {
+    let obj = bumpy_sphere(n);
+    bencher.bench_local(|| read(black_box(&obj)));
+}
+
+#[divan::bench(args = SIZES)]
+fn b_topology(bencher: Bencher, n: u32) {
+    let mesh = read(&bumpy_sphere(n));
+    bencher.bench_local(|| Topology::new(black_box(&mesh)));
+}
+
+#[divan::bench(args = SIZES)]
+fn c_classify(bencher: Bencher, n: u32) {
+    let scene = Scene::new(read(&bumpy_sphere(n)));
+    bencher.bench_local(|| view(black_box(&scene), outlines()));
+}
+
+#[divan::bench(args = SIZES)]
+fn d_visibility_of_outlines(bencher: Bencher, n: u32) {
+    let scene = Scene::new(read(&bumpy_sphere(n)));
+    let view = view(&scene, outlines());
+    bencher.bench_local(|| solve(black_box(&view), Engine::default(), &settings()));
+}
+
+#[divan::bench(args = SIZES)]
+fn e_visibility_of_all_edges(bencher: Bencher, n: u32) {
+    let scene = Scene::new(read(&bumpy_sphere(n)));
+    let view = view(&scene, LineSelection::all_edges());
+    bencher.bench_local(|| solve(black_box(&view), Engine::default(), &settings()));
+}
+
+#[divan::bench(args = SIZES)]
+fn f_strokes_of_all_edges(bencher: Bencher, n: u32) {
+    let scene = Scene::new(read(&bumpy_sphere(n)));
+    let view = view(&scene, LineSelection::all_edges());
+    let (visibility, ..) = solve(&view, Engine::default(), &settings());
+    bencher.bench_local(|| chain(black_box(&view), &visibility, &chaining()));
+}
+
+#[divan::bench(args = SIZES)]
+fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
+    let scene = Scene::new(read(&bumpy_sphere(n)));
+    let view = view(&scene, LineSelection::all_edges());
+    let (visibility, ..) = solve(&view, Engine::default(), &settings());
+    let drawing = chain(&view, &visibility, &chaining());
+    bencher.bench_local(|| {
+        let page = Page::new(&drawing, &camera(), &PageOptions::default()).expect("a page");
+        let options = PlotOptions {
+            pen_width_mm: 0.3,
+            hidden: HiddenLines::None,
+            dash: Dash::default(),
+            title: String::new(),
+            source: String::new(),
+        };
+        let plot = page.plot(black_box(&drawing), options).plot;
+        svg::write(&plot, StrokeElement::Path, &mut sink()).expect("it takes everything");
+    });
+}

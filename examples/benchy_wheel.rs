@@ -1,0 +1,31 @@
+//! The steering wheel of a small boat, with the edges that it hides dashed.
+
+mod sheet;
+
+use std::path::Path;
+
+use hiddenline::draw::{DrawOptions, HiddenLines};
+use hiddenline::framing::{Framing, Standpoint};
+use hiddenline::page::PageOptions;
+use hiddenline::plot::Plot;
+use hiddenline::read::read_file;
+
+use sheet::{Result, Sheet, save};
+
+pub(crate) fn plot() -> Result<Plot> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/benchy_wheel.stl");
+    let mesh = read_file(Path::new(path), None)?.mesh;
+    let standpoint = Standpoint::Angles { azimuth_deg: 205.0, elevation_deg: 20.0, distance: None };
+    Sheet {
+        title: "Wheel of a 3DBenchy",
+        mesh,
+        framing: Framing { standpoint, ..Framing::default() },
+        draw: DrawOptions { hidden: HiddenLines::Dashed, ..DrawOptions::default() },
+        page: PageOptions::default(),
+    }
+    .plot()
+}
+
+fn main() -> Result<()> {
+    save("benchy_wheel", &plot()?)
+}

@@ -1,0 +1,36 @@
+//! Spot, a cow: every visible edge of her mesh.
+
+mod sheet;
+
+use std::path::Path;
+
+use hiddenline::arrange::{Arrangement, UpAxis};
+use hiddenline::classify::LineSelection;
+use hiddenline::draw::DrawOptions;
+use hiddenline::framing::{Framing, Standpoint};
+use hiddenline::page::PageOptions;
+use hiddenline::plot::Plot;
+use hiddenline::read::read_file;
+
+use sheet::{Result, Sheet, save};
+
+pub(crate) fn plot() -> Result<Plot> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");
+    let model = read_file(Path::new(path), None)?;
+    let upright = Arrangement { up_axis: UpAxis::Y, ..Arrangement::default() };
+    let (mesh, _) = upright.arrange(vec![model.mesh])?;
+    let standpoint =
+        Standpoint::Angles { azimuth_deg: 215.0, elevation_deg: 14.0, distance: Some(4.5) };
+    Sheet {
+        title: "Spot",
+        mesh,
+        framing: Framing { standpoint, ..Framing::default() },
+        draw: DrawOptions { lines: LineSelection::all_edges(), ..DrawOptions::default() },
+        page: PageOptions::default(),
+    }
+    .plot()
+}
+
+fn main() -> Result<()> {
+    save("spot", &plot()?)
+}
