@@ -28,6 +28,8 @@ mod simplify;
 
 mod nearest;
 
+mod greedy;
+
 mod tour;
 
 mod order;
@@ -59,12 +61,12 @@ impl Effort {
             Self::None => 0,
             Self::Fast => {
                 if n <= 2_000 {
-                    3_000
+                    500
                 } else {
                     0
                 }
             }
-            Self::Best => 100_000 + 20 * n,
+            Self::Best => 20_000 + 3 * n,
             Self::Within(_) => u64::MAX,
         }
     }

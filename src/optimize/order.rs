@@ -1,8 +1,8 @@
 //! The order in which strokes are drawn, which end each begins at, and where closed ones begin.
 //!
-//! The nearest unused end comes next (a closed stroke may begin at any of its points); then the
-//! search of `tour` shortens the way. Seams of closed strokes are chosen again
-//! between the rounds of that search.
+//! Closed strokes first get the seam nearest to the stroke before, when always the nearest one comes
+//! next; the route itself is made by `greedy` and shortened by `tour`, and then better seams are
+//! chosen and it is shortened again.
 
 use std::time::Instant;
 
@@ -11,17 +11,21 @@ use rayon::prelude::*;
 
 use super::Effort;
 use super::graph::NONE;
+use super::greedy::greedy;
 use super::nearest::NearestPoints;
 use super::tour::Tour;
 use crate::plot::Polylines;
 
 /// Ends each end may be linked to in the search.
-const N_NEIGHBORS: usize = 8;
+const N_NEIGHBORS: usize = 10;
 /// Points of a closed stroke tried as its seam when the nearest one is looked for; all of them
 /// are tried later.
 const N_SEAMS: usize = 16;
-/// Longest run of strokes turned around, so that one move takes microseconds on any drawing.
-const MAX_TURN: usize = 50_000;
+/// Times the route is shortened when there are closed strokes, with better seams each time.
+const ROUNDS: usize = 2;
+/// Longest runs of strokes turned around, one pass each: cheap moves come first, and no move takes
+/// longer than a millisecond on any drawing.
+const MAX_TURNS: [usize; 3] = [1_000, 10_000, 100_000];
 /// The same while random changes are tried: those act within a small neighborhood.
 const MAX_TURN_ITERATED: usize = 1_000;
 
@@ -48,30 +52,43 @@ pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
     }
     let begun = Instant::now();
     let strokes: Vec<&[DVec2]> = lines.iter().collect();
-    let mut route = nearest_first(&strokes);
     let any_closed = strokes.iter().any(|stroke| is_closed(stroke));
-    let mut n_changes = 0;
-    let rounds: &[bool] = match (any_closed, effort) {
-        (false, _) => &[true],
-        (true, Effort::Fast) => &[false, true],
-        (true, _) => &[false, true, true],
+    let mut route = if any_closed {
+        nearest_first(&strokes)
+    } else {
+        as_given(&strokes)
     };
-    for &iterated in rounds {
-        if any_closed {
-            choose_seams(&strokes, &mut route);
-        }
-        let share = rounds.iter().filter(|&&r| r).count() as u64;
-        let changes = if iterated {
-            effort.n_changes(strokes.len()) / share
-        } else {
-            0
+    let mut n_changes = 0;
+    let n_rounds = if any_closed { ROUNDS } else { 1 };
+    for round in 0..n_rounds {
+        let ends = Ends::new(&strokes, &route);
+        let entries = match round {
+            0 => greedy(&ends.points, &ends.neighbors, N_NEIGHBORS),
+            _ => route
+                .iter()
+                .map(|visit| 2 * visit.stroke + u32::from(visit.turned))
+                .collect(),
         };
-        n_changes += shorten(&strokes, &mut route, changes, || match effort {
-            Effort::Within(time) => begun.elapsed() < time,
-            _ => true,
-        });
-    }
-    if any_closed {
+        let mut tour = Tour::new(&ends.points, &entries, &ends.neighbors, N_NEIGHBORS);
+        for max_turn in MAX_TURNS {
+            tour.improve_all(max_turn);
+        }
+        // The first round only finds good seams.
+        if round + 1 == n_rounds {
+            let in_time = || match effort {
+                Effort::Within(time) => begun.elapsed() < time,
+                _ => true,
+            };
+            n_changes = tour.iterate(effort.n_changes(strokes.len()), MAX_TURN_ITERATED, in_time);
+        }
+        for (visit, entry) in route.iter_mut().zip(tour.entries()) {
+            let seam = ends.seams[entry as usize / 2];
+            *visit = Visit {
+                stroke: entry / 2,
+                turned: entry % 2 == 1,
+                seam,
+            };
+        }
         choose_seams(&strokes, &mut route);
     }
     turn_toward_origin(&strokes, &mut route);
@@ -129,6 +146,17 @@ fn is_closed(stroke: &[DVec2]) -> bool {
     stroke.len() > 2 && stroke.first() == stroke.last()
 }
 
+/// Every stroke as it comes.
+fn as_given(strokes: &[&[DVec2]]) -> Vec<Visit> {
+    (0..strokes.len() as u32)
+        .map(|stroke| Visit {
+            stroke,
+            turned: false,
+            seam: 0,
+        })
+        .collect()
+}
+
 /// From the page's origin always on to the nearest end that is left.
 fn nearest_first(strokes: &[&[DVec2]]) -> Vec<Visit> {
     let mut points = Vec::new();
@@ -174,40 +202,36 @@ fn nearest_first(strokes: &[&[DVec2]]) -> Vec<Visit> {
     route
 }
 
-/// Searches for a shorter route with the seams as they are; returns the random changes tried.
-fn shorten(
-    strokes: &[&[DVec2]],
-    route: &mut [Visit],
-    n_changes: u64,
-    go_on: impl FnMut() -> bool,
-) -> u64 {
-    let mut ends = vec![DVec2::ZERO; strokes.len() * 2];
-    let mut entries = Vec::with_capacity(route.len());
-    let mut seams = vec![0; strokes.len()];
-    for visit in route.iter() {
-        let (s, stroke) = (visit.stroke as usize, strokes[visit.stroke as usize]);
-        let forward = Visit {
-            turned: false,
-            ..*visit
-        };
-        ends[2 * s] = forward.entry(stroke);
-        ends[2 * s + 1] = forward.exit(stroke);
-        entries.push(2 * visit.stroke + u32::from(visit.turned));
-        seams[s] = visit.seam;
+/// The strokes' ends with the seams as they are.
+struct Ends {
+    /// First and last point of every stroke.
+    points: Vec<DVec2>,
+    neighbors: Vec<u32>,
+    /// Seam of every stroke.
+    seams: Vec<u32>,
+}
+
+impl Ends {
+    fn new(strokes: &[&[DVec2]], route: &[Visit]) -> Self {
+        let mut points = vec![DVec2::ZERO; strokes.len() * 2];
+        let mut seams = vec![0; strokes.len()];
+        for visit in route {
+            let (s, stroke) = (visit.stroke as usize, strokes[visit.stroke as usize]);
+            let forward = Visit {
+                turned: false,
+                ..*visit
+            };
+            points[2 * s] = forward.entry(stroke);
+            points[2 * s + 1] = forward.exit(stroke);
+            seams[s] = visit.seam;
+        }
+        let neighbors = neighbors(&points);
+        Self {
+            points,
+            neighbors,
+            seams,
+        }
     }
-    let neighbors = neighbors(&ends);
-    let mut tour = Tour::new(&ends, &entries, &neighbors, N_NEIGHBORS);
-    tour.improve_all(MAX_TURN);
-    let done = tour.iterate(n_changes, MAX_TURN_ITERATED, go_on);
-    for (visit, entry) in route.iter_mut().zip(tour.entries()) {
-        let stroke = entry / 2;
-        *visit = Visit {
-            stroke,
-            turned: entry % 2 == 1,
-            seam: seams[stroke as usize],
-        };
-    }
-    done
 }
 
 /// The nearest ends of other strokes for each end, nearest first, filled up with `NONE`.

@@ -37,7 +37,7 @@ pub(super) struct Tour<'a> {
     place: Vec<u32>,
     queue: VecDeque<u32>,
     queued: Vec<bool>,
-    /// Longest run that is turned around.
+    /// Farthest apart that strokes may stand whose ends a move links.
     max_turn: usize,
     /// Runs turned since the last change was accepted: place and length.
     turned: Vec<(u32, u32)>,
@@ -156,7 +156,7 @@ impl<'a> Tour<'a> {
     /// Length of the way between two ends; to the closing stroke there is none.
     fn link(&self, a: u32, b: u32) -> i64 {
         match (self.ends.get(a as usize), self.ends.get(b as usize)) {
-            (Some(a), Some(b)) => (a.distance(*b) * NM_PER_MM).round() as i64,
+            (Some(a), Some(b)) => (a.distance(*b) * NM_PER_MM) as i64,
             _ => 0,
         }
     }
@@ -202,7 +202,7 @@ impl<'a> Tour<'a> {
                 break;
             }
             let g = self.linked(c);
-            if c == f || g == end {
+            if c == f || g == end || self.apart(end, c) > self.max_turn {
                 continue;
             }
             let freed = now + self.link(c, g) - new;
@@ -213,7 +213,14 @@ impl<'a> Tour<'a> {
             self.offer_moves(c, g, end, f, freed, &mut offer);
         }
         let (gain, action) = best?;
-        self.apply(action).then_some(gain)
+        self.apply(action);
+        Some(gain)
+    }
+
+    /// Strokes between those of two ends, the shorter way around the ring: what a move costs.
+    fn apart(&self, a: u32, b: u32) -> usize {
+        let distance = self.place_of(a).abs_diff(self.place_of(b));
+        distance.min(self.ring.len() - distance)
     }
 
     /// Offers to take the strokes from `end` away from `f` and put them between `c` and `g`.
@@ -244,8 +251,7 @@ impl<'a> Tour<'a> {
         self.ring[self.place[end as usize / 2] as usize] == end
     }
 
-    /// Carries out a move; `false` if it would turn too long a run.
-    fn apply(&mut self, action: Move) -> bool {
+    fn apply(&mut self, action: Move) {
         let n = self.ring.len();
         match action {
             Move::Turn { end, c } => {
@@ -263,9 +269,6 @@ impl<'a> Tour<'a> {
                 } else {
                     (from, len)
                 };
-                if len > self.max_turn {
-                    return false;
-                }
                 self.turn(from % n, len);
                 for touched in [end, c, f, g] {
                     self.push(touched);
@@ -295,9 +298,6 @@ impl<'a> Tour<'a> {
                 let turned = entering == c_enters;
                 let after = (cut + n - first) % n - n_strokes;
                 let before = (first + n - cut) % n;
-                if after.min(before) > self.max_turn {
-                    return false;
-                }
                 if after <= before {
                     self.swap_runs(first, n_strokes, after, turned);
                 } else {
@@ -308,7 +308,6 @@ impl<'a> Tour<'a> {
                 }
             }
         }
-        true
     }
 
     fn place_of(&self, end: u32) -> usize {
