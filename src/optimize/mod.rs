@@ -75,10 +75,12 @@ impl Effort {
 /// What to do with a drawing's strokes; lengths in page millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Points at most this far apart are one joint, and ink at most this far from other ink along
-    /// it is drawn once. Zero joins equal points and exactly collinear ink only; `None` joins
-    /// nothing.
+    /// Points at most this far apart are one joint; zero joins equal points only, `None` joins
+    /// nothing and keeps what is drawn twice.
     pub join_tolerance_mm: Option<f64>,
+    /// Ink that runs along other ink at most this far from it is drawn once; zero finds exactly
+    /// collinear ink only.
+    pub overlap_mm: f64,
     /// How far points left out may be from the stroke; zero leaves out exactly collinear ones.
     pub simplify_mm: f64,
     /// Strokes shorter than this are dropped, and those whose ends are nearer to each other than
@@ -91,7 +93,8 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            join_tolerance_mm: Some(0.002),
+            join_tolerance_mm: Some(0.001),
+            overlap_mm: 0.0005,
             simplify_mm: 0.0,
             shortest_mm: 0.0,
             effort: Effort::Fast,
@@ -127,15 +130,14 @@ pub fn optimize(plot: &Plot, options: &Options) -> (Plot, u64) {
 /// Joins, simplifies and orders one pen's strokes.
 ///
 /// `numbers` may give each point of each stroke, in order, the number of the vertex it is; points
-/// of equal number, and equal points, are then the joints, and the join tolerance only tells which
-/// ink is the same.
+/// of equal number, and equal points, are then the joints, and the join tolerance is not used.
 pub fn optimize_lines(lines: &Polylines, numbers: Option<&[u32]>, options: &Options) -> Ordered {
     let joined = match options.join_tolerance_mm {
         None => simplified(lines.iter().map(|line| (line.to_vec(), None)), options),
         Some(tolerance) => {
             let joints = numbers.map_or(Joints::Near(tolerance), Joints::Numbered);
             let mut graph = Graph::new(lines, joints);
-            remove_overlaps(&mut graph, tolerance);
+            remove_overlaps(&mut graph, options.overlap_mm);
             let trails = trails(&graph);
             let degree = degrees(&graph);
             let strokes = trails.iter().map(|trail| {
