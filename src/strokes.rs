@@ -85,11 +85,7 @@ impl Drawing {
         if self.points.len() < start + 2 {
             self.points.truncate(start);
         } else {
-            self.heads.push(Head {
-                kind,
-                qi,
-                end: self.points.len() as u32,
-            });
+            self.heads.push(Head { kind, qi, end: self.points.len() as u32 });
         }
     }
 
@@ -113,19 +109,13 @@ impl Drawing {
         self.heads.iter().scan(0, |start, head| {
             let points = &self.points[*start..head.end as usize];
             *start = head.end as usize;
-            Some(Stroke {
-                kind: head.kind,
-                qi: head.qi,
-                points,
-            })
+            Some(Stroke { kind: head.kind, qi: head.qi, points })
         })
     }
 
     /// Smallest box around all points as (lowest, highest) corner; `None` without strokes.
     pub fn bounds(&self) -> Option<(DVec2, DVec2)> {
         let (first, rest) = self.points.split_first()?;
-        Some(rest.iter().fold((*first, *first), |(low, high), &p| {
-            (low.min(p), high.max(p))
-        }))
+        Some(rest.iter().fold((*first, *first), |(low, high), &p| (low.min(p), high.max(p))))
     }
 }

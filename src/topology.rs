@@ -71,9 +71,7 @@ impl Topology {
         for part in &parts {
             let before = topology.uses.len() as u32;
             topology.edges.extend_from_slice(&part.edges);
-            topology
-                .use_starts
-                .extend(part.use_ends.iter().map(|end| before + end));
+            topology.use_starts.extend(part.use_ends.iter().map(|end| before + end));
             topology.uses.extend_from_slice(&part.uses);
         }
         for edge in 0..topology.edges.len() {

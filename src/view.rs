@@ -76,12 +76,7 @@ impl Camera {
         up: DVec3,
         projection: Projection,
     ) -> Result<Self, CameraError> {
-        let camera = Self {
-            eye,
-            target,
-            up,
-            projection,
-        };
+        let camera = Self { eye, target, up, projection };
         let forward = camera.forward();
         if !(eye.is_finite() && target.is_finite() && up.is_finite() && forward.is_finite()) {
             return Err(CameraError::NotFinite);

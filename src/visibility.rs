@@ -33,10 +33,7 @@ pub struct Visibility {
 
 impl Default for Visibility {
     fn default() -> Self {
-        Self {
-            spans: Vec::new(),
-            starts: vec![0],
-        }
+        Self { spans: Vec::new(), starts: vec![0] }
     }
 }
 
@@ -51,8 +48,7 @@ impl Visibility {
     pub fn append(&mut self, other: &Self) {
         let before = self.spans.len() as u32;
         self.spans.extend_from_slice(&other.spans);
-        self.starts
-            .extend(other.starts[1..].iter().map(|start| before + start));
+        self.starts.extend(other.starts[1..].iter().map(|start| before + start));
     }
 
     /// Number of segments.

@@ -145,10 +145,7 @@ fn add_lines(sum: &mut Estimate, last: &mut Option<DVec2>, lines: &Polylines, mo
         }
         sum.strokes += 1;
         sum.lifts += 1;
-        sum.down_mm += line
-            .windows(2)
-            .map(|pair| pair[0].distance(pair[1]))
-            .sum::<f64>();
+        sum.down_mm += line.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
         sum.seconds += motion.lower + stroke_seconds(line, motion, &mut speeds) + motion.raise;
     }
 }
@@ -158,10 +155,7 @@ fn stroke_seconds(line: &[DVec2], motion: &Motion, speeds: &mut Vec<f64>) -> f64
     let acceleration = motion.down_acceleration;
     speeds.clear();
     speeds.push(0.0);
-    speeds.extend(
-        line.windows(3)
-            .map(|p| corner_speed(p[1] - p[0], p[2] - p[1], motion)),
-    );
+    speeds.extend(line.windows(3).map(|p| corner_speed(p[1] - p[0], p[2] - p[1], motion)));
     speeds.push(0.0);
     // Reachable from the point before, and such that the next can be reached.
     for i in 1..line.len() {
@@ -176,13 +170,7 @@ fn stroke_seconds(line: &[DVec2], motion: &Motion, speeds: &mut Vec<f64>) -> f64
     line.windows(2)
         .zip(speeds.windows(2))
         .map(|(p, v)| {
-            ramp_seconds(
-                p[0].distance(p[1]),
-                v[0],
-                v[1],
-                motion.down_speed,
-                acceleration,
-            )
+            ramp_seconds(p[0].distance(p[1]), v[0], v[1], motion.down_speed, acceleration)
         })
         .sum()
 }

@@ -59,11 +59,7 @@ impl Graph {
                 }
             }
         }
-        let mut graph = Self {
-            positions,
-            edges: unique_edges(keys),
-            dots,
-        };
+        let mut graph = Self { positions, edges: unique_edges(keys), dots };
         graph.drop_covered_dots();
         graph
     }
@@ -83,10 +79,7 @@ impl Graph {
 
     /// Total length of the edges in millimetres.
     pub fn length_mm(&self) -> f64 {
-        self.edges
-            .iter()
-            .map(|&[a, b]| self.position(a).distance(self.position(b)))
-            .sum()
+        self.edges.iter().map(|&[a, b]| self.position(a).distance(self.position(b))).sum()
     }
 
     /// Position of a vertex.
@@ -107,9 +100,7 @@ pub(super) fn edge_key(a: u32, b: u32) -> u64 {
 pub(super) fn unique_edges(mut keys: Vec<u64>) -> Vec<[u32; 2]> {
     keys.par_sort_unstable();
     keys.dedup();
-    keys.into_iter()
-        .map(|key| [(key >> 32) as u32, key as u32])
-        .collect()
+    keys.into_iter().map(|key| [(key >> 32) as u32, key as u32]).collect()
 }
 
 /// All points in order, with those of equal number moved to the first of them.
@@ -129,15 +120,12 @@ fn joined_points(lines: &Polylines, joints: Joints<'_>) -> Vec<DVec2> {
 
 /// Kept positions in order, and for every point the number of the one it moves to.
 fn weld(points: &[DVec2], tolerance: f64) -> (Vec<DVec2>, Vec<u32>) {
-    let mut order: Vec<u32> = (0..points.len() as u32)
-        .filter(|&i| points[i as usize].is_finite())
-        .collect();
+    let mut order: Vec<u32> =
+        (0..points.len() as u32).filter(|&i| points[i as usize].is_finite()).collect();
     let key = |i: u32| points[i as usize];
     order.par_sort_unstable_by(|&i, &j| {
         let (a, b) = (key(i), key(j));
-        a.x.total_cmp(&b.x)
-            .then(a.y.total_cmp(&b.y))
-            .then(i.cmp(&j))
+        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(&j))
     });
     let mut kept: Vec<DVec2> = Vec::new();
     let mut vertex_of = vec![NONE; points.len()];
@@ -169,11 +157,7 @@ struct Cells {
 
 impl Cells {
     fn new(size: f64) -> Self {
-        Self {
-            size,
-            heads: FxHashMap::default(),
-            next: Vec::new(),
-        }
+        Self { size, heads: FxHashMap::default(), next: Vec::new() }
     }
 
     fn cell(&self, p: DVec2) -> (i64, i64) {

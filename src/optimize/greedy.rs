@@ -19,11 +19,7 @@ pub(super) fn greedy(ends: &[DVec2], neighbors: &[u32], n_neighbors: usize) -> V
         .filter(|&(_, &j)| j != NONE)
         .map(|(k, &j)| {
             let i = (k / n_neighbors) as u32;
-            (
-                ends[i as usize].distance_squared(ends[j as usize]),
-                i.min(j),
-                i.max(j),
-            )
+            (ends[i as usize].distance_squared(ends[j as usize]), i.min(j), i.max(j))
         })
         .collect();
     pairs.par_sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
@@ -40,9 +36,7 @@ pub(super) fn greedy(ends: &[DVec2], neighbors: &[u32], n_neighbors: usize) -> V
             far[b as usize] = a;
         }
     }
-    let free: Vec<u32> = (0..ends.len() as u32)
-        .filter(|&i| linked[i as usize] == NONE)
-        .collect();
+    let free: Vec<u32> = (0..ends.len() as u32).filter(|&i| linked[i as usize] == NONE).collect();
     let points: Vec<DVec2> = free.iter().map(|&i| ends[i as usize]).collect();
     let mut left = NearestPoints::new(&points);
     let mut entries = Vec::with_capacity(ends.len() / 2);

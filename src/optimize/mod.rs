@@ -112,19 +112,10 @@ pub fn optimize(plot: &Plot, options: &Options) -> (Plot, u64) {
         .map(|layer| {
             let ordered = optimize_lines(&layer.lines, None, options);
             n_changes += ordered.n_changes;
-            Layer {
-                lines: ordered.lines,
-                ..layer.clone()
-            }
+            Layer { lines: ordered.lines, ..layer.clone() }
         })
         .collect();
-    (
-        Plot {
-            layers,
-            ..plot.clone()
-        },
-        n_changes,
-    )
+    (Plot { layers, ..plot.clone() }, n_changes)
 }
 
 /// Joins, simplifies and orders one pen's strokes.
@@ -145,10 +136,7 @@ pub fn optimize_lines(lines: &Polylines, numbers: Option<&[u32]>, options: &Opti
                 let joints = trail.iter().map(|&v| degree[v as usize] != 2).collect();
                 (points, Some(joints))
             });
-            let dots = graph
-                .dots
-                .iter()
-                .map(|&v| (vec![graph.position(v); 2], None));
+            let dots = graph.dots.iter().map(|&v| (vec![graph.position(v); 2], None));
             simplified(strokes.chain(dots), options)
         }
     };

@@ -40,12 +40,7 @@ impl<'a> NearestPoints<'a> {
             depth += 1;
         }
         let n_inner = (1 << depth) - 1;
-        let empty = Node {
-            low: DVec2::ZERO,
-            high: DVec2::ZERO,
-            start: 0,
-            left: 0,
-        };
+        let empty = Node { low: DVec2::ZERO, high: DVec2::ZERO, start: 0, left: 0 };
         let mut tree = Self {
             points,
             order: (0..points.len() as u32).collect(),
@@ -71,20 +66,11 @@ impl<'a> NearestPoints<'a> {
         if node < self.n_inner && middle > 0 {
             let wide = (high - low).x >= (high - low).y;
             let key = |i: u32| {
-                if wide {
-                    points[i as usize].x
-                } else {
-                    points[i as usize].y
-                }
+                if wide { points[i as usize].x } else { points[i as usize].y }
             };
             run.select_nth_unstable_by(middle, |&i, &j| key(i).total_cmp(&key(j)).then(i.cmp(&j)));
         }
-        self.nodes[node] = Node {
-            low,
-            high,
-            start: start as u32,
-            left: (end - start) as u32,
-        };
+        self.nodes[node] = Node { low, high, start: start as u32, left: (end - start) as u32 };
         if node < self.n_inner {
             self.build(2 * node + 1, start, start + middle);
             self.build(2 * node + 2, start + middle, end);
@@ -137,11 +123,7 @@ impl<'a> NearestPoints<'a> {
                 found.insert(at, (d, i));
                 found.truncate(k);
             }
-            if found.len() < k {
-                f64::INFINITY
-            } else {
-                found.last().map_or(0.0, |last| last.0)
-            }
+            if found.len() < k { f64::INFINITY } else { found.last().map_or(0.0, |last| last.0) }
         });
     }
 
@@ -165,15 +147,8 @@ impl<'a> NearestPoints<'a> {
                 continue;
             }
             let (a, b) = (2 * node + 1, 2 * node + 2);
-            let (da, db) = (
-                self.nodes[a].distance_squared(p),
-                self.nodes[b].distance_squared(p),
-            );
-            let (near, far) = if da <= db {
-                ((da, a), (db, b))
-            } else {
-                ((db, b), (da, a))
-            };
+            let (da, db) = (self.nodes[a].distance_squared(p), self.nodes[b].distance_squared(p));
+            let (near, far) = if da <= db { ((da, a), (db, b)) } else { ((db, b), (da, a)) };
             stack[n] = far;
             stack[n + 1] = near;
             n += 2;

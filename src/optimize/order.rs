@@ -45,29 +45,19 @@ pub struct Ordered {
 /// at [`Effort`]; about 200 bytes a stroke.
 pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
     if effort == Effort::None || lines.len() < 2 {
-        return Ordered {
-            lines: lines.clone(),
-            n_changes: 0,
-        };
+        return Ordered { lines: lines.clone(), n_changes: 0 };
     }
     let begun = Instant::now();
     let strokes: Vec<&[DVec2]> = lines.iter().collect();
     let any_closed = strokes.iter().any(|stroke| is_closed(stroke));
-    let mut route = if any_closed {
-        nearest_first(&strokes)
-    } else {
-        as_given(&strokes)
-    };
+    let mut route = if any_closed { nearest_first(&strokes) } else { as_given(&strokes) };
     let mut n_changes = 0;
     let n_rounds = if any_closed { ROUNDS } else { 1 };
     for round in 0..n_rounds {
         let ends = Ends::new(&strokes, &route);
         let entries = match round {
             0 => greedy(&ends.points, &ends.neighbors, N_NEIGHBORS),
-            _ => route
-                .iter()
-                .map(|visit| 2 * visit.stroke + u32::from(visit.turned))
-                .collect(),
+            _ => route.iter().map(|visit| 2 * visit.stroke + u32::from(visit.turned)).collect(),
         };
         let mut tour = Tour::new(&ends.points, &entries, &ends.neighbors, N_NEIGHBORS);
         for max_turn in MAX_TURNS {
@@ -83,11 +73,7 @@ pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
         }
         for (visit, entry) in route.iter_mut().zip(tour.entries()) {
             let seam = ends.seams[entry as usize / 2];
-            *visit = Visit {
-                stroke: entry / 2,
-                turned: entry % 2 == 1,
-                seam,
-            };
+            *visit = Visit { stroke: entry / 2, turned: entry % 2 == 1, seam };
         }
         choose_seams(&strokes, &mut route);
     }
@@ -96,10 +82,7 @@ pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
     for visit in &route {
         ordered.push(visit.points(strokes[visit.stroke as usize]));
     }
-    Ordered {
-        lines: ordered,
-        n_changes,
-    }
+    Ordered { lines: ordered, n_changes }
 }
 
 /// A stroke in its place on the route.
@@ -122,11 +105,7 @@ impl Visit {
     }
 
     fn exit(&self, stroke: &[DVec2]) -> DVec2 {
-        Self {
-            turned: !self.turned,
-            ..*self
-        }
-        .entry(stroke)
+        Self { turned: !self.turned, ..*self }.entry(stroke)
     }
 
     fn points<'a>(&self, stroke: &'a [DVec2]) -> Box<dyn Iterator<Item = DVec2> + 'a> {
@@ -148,13 +127,7 @@ fn is_closed(stroke: &[DVec2]) -> bool {
 
 /// Every stroke as it comes.
 fn as_given(strokes: &[&[DVec2]]) -> Vec<Visit> {
-    (0..strokes.len() as u32)
-        .map(|stroke| Visit {
-            stroke,
-            turned: false,
-            seam: 0,
-        })
-        .collect()
+    (0..strokes.len() as u32).map(|stroke| Visit { stroke, turned: false, seam: 0 }).collect()
 }
 
 /// From the page's origin always on to the nearest end that is left.
@@ -164,18 +137,11 @@ fn nearest_first(strokes: &[&[DVec2]]) -> Vec<Visit> {
     let mut starts = Vec::with_capacity(strokes.len() + 1);
     for (s, stroke) in strokes.iter().enumerate() {
         starts.push(points.len());
-        let first = Visit {
-            stroke: s as u32,
-            turned: false,
-            seam: 0,
-        };
+        let first = Visit { stroke: s as u32, turned: false, seam: 0 };
         if is_closed(stroke) {
             let step = (stroke.len() - 1).div_ceil(N_SEAMS);
             for seam in (0..stroke.len() - 1).step_by(step) {
-                visits.push(Visit {
-                    seam: seam as u32,
-                    ..first
-                });
+                visits.push(Visit { seam: seam as u32, ..first });
                 points.push(stroke[seam]);
             }
         } else {
@@ -217,20 +183,13 @@ impl Ends {
         let mut seams = vec![0; strokes.len()];
         for visit in route {
             let (s, stroke) = (visit.stroke as usize, strokes[visit.stroke as usize]);
-            let forward = Visit {
-                turned: false,
-                ..*visit
-            };
+            let forward = Visit { turned: false, ..*visit };
             points[2 * s] = forward.entry(stroke);
             points[2 * s + 1] = forward.exit(stroke);
             seams[s] = visit.seam;
         }
         let neighbors = neighbors(&points);
-        Self {
-            points,
-            neighbors,
-            seams,
-        }
+        Self { points, neighbors, seams }
     }
 }
 
@@ -238,15 +197,15 @@ impl Ends {
 fn neighbors(ends: &[DVec2]) -> Vec<u32> {
     let tree = NearestPoints::new(ends);
     let mut neighbors = vec![NONE; ends.len() * N_NEIGHBORS];
-    neighbors
-        .par_chunks_mut(N_NEIGHBORS)
-        .enumerate()
-        .for_each_init(Vec::new, |found, (i, near)| {
+    neighbors.par_chunks_mut(N_NEIGHBORS).enumerate().for_each_init(
+        Vec::new,
+        |found, (i, near)| {
             tree.nearest_k(ends[i], N_NEIGHBORS, |j| j as usize / 2 != i / 2, found);
             for (slot, &(_, j)) in near.iter_mut().zip(found.iter()) {
                 *slot = j;
             }
-        });
+        },
+    );
     neighbors
 }
 
@@ -259,10 +218,8 @@ fn choose_seams(strokes: &[&[DVec2]], route: &mut [Visit]) {
             continue;
         }
         let neighbor = |visit: &Visit| strokes[visit.stroke as usize];
-        let before = i
-            .checked_sub(1)
-            .and_then(|j| route.get(j))
-            .map(|visit| visit.exit(neighbor(visit)));
+        let before =
+            i.checked_sub(1).and_then(|j| route.get(j)).map(|visit| visit.exit(neighbor(visit)));
         let after = route.get(i + 1).map(|visit| visit.entry(neighbor(visit)));
         let way =
             |p: DVec2| before.map_or(0.0, |q| q.distance(p)) + after.map_or(0.0, |q| q.distance(p));

@@ -45,10 +45,8 @@ pub fn remove_overlaps(graph: &mut Graph, tolerance_mm: f64) {
         match next_cut.next_if(|cut| cut.0 as usize == e) {
             None => keys.push(edge_key(a, b)),
             Some((_, inner)) => {
-                let chain: Vec<u32> = std::iter::once(a)
-                    .chain(inner.iter().copied())
-                    .chain([b])
-                    .collect();
+                let chain: Vec<u32> =
+                    std::iter::once(a).chain(inner.iter().copied()).chain([b]).collect();
                 keys.extend(chain.windows(2).map(|pair| edge_key(pair[0], pair[1])));
             }
         }
@@ -59,11 +57,7 @@ pub fn remove_overlaps(graph: &mut Graph, tolerance_mm: f64) {
 /// Vertices that cut edge `e`, from its first to its second vertex.
 fn inner_vertices(graph: &Graph, stars: &Stars, grid: &Grid, e: u32, tolerance: f64) -> Vec<u32> {
     let [a, b] = graph.edges[e as usize];
-    let edge = Line {
-        from: graph.position(a),
-        to: graph.position(b),
-        tolerance,
-    };
+    let edge = Line { from: graph.position(a), to: graph.position(b), tolerance };
     let mut inner: Vec<(f64, u32)> = Vec::new();
     grid.near(edge.from, edge.to, tolerance, |vertex| {
         let p = graph.position(vertex);
@@ -73,11 +67,7 @@ fn inner_vertices(graph: &Graph, stars: &Stars, grid: &Grid, e: u32, tolerance: 
                 let q = graph.position(other);
                 let ahead = (q - p).dot(edge.to - edge.from);
                 let end = if ahead > 0.0 { b } else { a };
-                let onward = Line {
-                    from: p,
-                    to: q,
-                    tolerance,
-                };
+                let onward = Line { from: p, to: q, tolerance };
                 ahead != 0.0
                     && (other == end || edge.passes(q) || onward.passes(graph.position(end)))
             });
@@ -124,10 +114,8 @@ struct Grid {
 impl Grid {
     fn new(graph: &Graph, tolerance: f64) -> Option<Self> {
         let first = *graph.positions.first()?;
-        let (low, high) = graph
-            .positions
-            .iter()
-            .fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
+        let (low, high) =
+            graph.positions.iter().fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
         let n = graph.positions.len() as f64;
         let size = high - low;
         let cell = (size.x * size.y / n)
@@ -177,11 +165,7 @@ impl Grid {
 
     /// Calls `visit` with every vertex within `margin` of the segment, and with some others.
     fn near(&self, from: DVec2, to: DVec2, margin: f64, mut visit: impl FnMut(u32)) {
-        let (left, right) = if from.x <= to.x {
-            (from, to)
-        } else {
-            (to, from)
-        };
+        let (left, right) = if from.x <= to.x { (from, to) } else { (to, from) };
         let slope = (right.y - left.y) / (right.x - left.x);
         let (low_y, high_y) = (from.y.min(to.y), from.y.max(to.y));
         for column in self.column(left.x - margin)..=self.column(right.x + margin) {
@@ -195,19 +179,14 @@ impl Grid {
             );
             // A vertical piece has no slope: both are not numbers, and the whole height is kept.
             let (bottom, top) = if slope.is_finite() {
-                (
-                    y0.min(y1).clamp(low_y, high_y),
-                    y0.max(y1).clamp(low_y, high_y),
-                )
+                (y0.min(y1).clamp(low_y, high_y), y0.max(y1).clamp(low_y, high_y))
             } else {
                 (low_y, high_y)
             };
             for row in self.row(bottom - slack)..=self.row(top + slack) {
                 let c = row * self.n_columns + column;
                 let range = self.starts[c] as usize..self.starts[c + 1] as usize;
-                self.vertices[range]
-                    .iter()
-                    .for_each(|&vertex| visit(vertex));
+                self.vertices[range].iter().for_each(|&vertex| visit(vertex));
             }
         }
     }

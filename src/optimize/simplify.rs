@@ -24,9 +24,7 @@ pub(super) fn simplify(
     let mut turning = 0;
     if first == last {
         let farthest = |i: &usize, j: &usize| {
-            line[*i]
-                .distance_squared(first)
-                .total_cmp(&line[*j].distance_squared(first))
+            line[*i].distance_squared(first).total_cmp(&line[*j].distance_squared(first))
         };
         turning = (1..line.len() - 1).max_by(farthest).unwrap_or(0);
     }
@@ -62,12 +60,7 @@ fn keep_farthest(run: &[DVec2], tolerance_mm: f64, kept: &mut Vec<DVec2>) {
             stack.push((i, to));
         }
     }
-    kept.extend(
-        run.iter()
-            .zip(keep)
-            .filter(|(_, keep)| *keep)
-            .map(|(&p, _)| p),
-    );
+    kept.extend(run.iter().zip(keep).filter(|(_, keep)| *keep).map(|(&p, _)| p));
 }
 
 /// Appends the inner points of `run` at which it is not exactly straight.
@@ -88,10 +81,6 @@ fn keep_corners(run: &[DVec2], kept: &mut Vec<DVec2>) {
 fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     let length_squared = along.length_squared();
-    let t = if length_squared > 0.0 {
-        (p - a).dot(along) / length_squared
-    } else {
-        0.0
-    };
+    let t = if length_squared > 0.0 { (p - a).dot(along) / length_squared } else { 0.0 };
     p.distance(a + along * t.clamp(0.0, 1.0))
 }

@@ -6,7 +6,7 @@ use crate::plot::{Layer, Plot, Polylines};
 /// longer than that is a layer of its own.
 ///
 /// Layers are numbered from 1 in drawing order, and the parts of one that was split are named
-/// `visible part 1`, `visible part 2` and so on. A distance that is not positive splits nothing.
+/// `visible-part-1`, `visible-part-2` and so on. A distance that is not positive splits nothing.
 pub fn split_by_distance(plot: &Plot, distance_mm: f64) -> Plot {
     if distance_mm.is_nan() || distance_mm <= 0.0 {
         return plot.clone();
@@ -30,27 +30,15 @@ pub fn split_by_distance(plot: &Plot, distance_mm: f64) -> Plot {
         for (i, lines) in parts.into_iter().enumerate() {
             let name = match n_parts {
                 1 => layer.name.clone(),
-                _ => format!("{} part {}", layer.name, i + 1),
+                _ => format!("{}-part-{}", layer.name, i + 1),
             };
-            layers.push(Layer {
-                number: 0,
-                name,
-                pen: layer.pen.clone(),
-                lines,
-            });
+            layers.push(Layer { number: 0, name, pen: layer.pen.clone(), lines });
         }
     }
     // Only a split moves the numbers, so that whole drawings keep the pens they were given.
     let renumber = layers.len() != plot.layers.len();
     for (i, layer) in layers.iter_mut().enumerate() {
-        layer.number = if renumber {
-            i as u32 + 1
-        } else {
-            plot.layers[i].number
-        };
+        layer.number = if renumber { i as u32 + 1 } else { plot.layers[i].number };
     }
-    Plot {
-        layers,
-        ..plot.clone()
-    }
+    Plot { layers, ..plot.clone() }
 }

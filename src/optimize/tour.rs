@@ -258,17 +258,9 @@ impl<'a> Tour<'a> {
                 let (f, g) = (self.linked(end), self.linked(c));
                 let (i, j) = (self.place_of(end), self.place_of(c));
                 // Between the two cut links: from one entry up to before the other.
-                let (from, to) = if self.is_entry(end) {
-                    (i, j)
-                } else {
-                    (i + 1, j + 1)
-                };
+                let (from, to) = if self.is_entry(end) { (i, j) } else { (i + 1, j + 1) };
                 let len = (to + n - from) % n;
-                let (from, len) = if 2 * len > n {
-                    (to, n - len)
-                } else {
-                    (from, len)
-                };
+                let (from, len) = if 2 * len > n { (to, n - len) } else { (from, len) };
                 self.turn(from % n, len);
                 for touched in [end, c, f, g] {
                     self.push(touched);
@@ -290,11 +282,7 @@ impl<'a> Tour<'a> {
                 };
                 let a = self.linked(x);
                 let c_enters = self.is_entry(c);
-                let cut = if c_enters {
-                    self.place_of(c)
-                } else {
-                    self.place_of(c) + 1
-                } % n;
+                let cut = if c_enters { self.place_of(c) } else { self.place_of(c) + 1 } % n;
                 let turned = entering == c_enters;
                 let after = (cut + n - first) % n - n_strokes;
                 let before = (first + n - cut) % n;

@@ -53,10 +53,7 @@ impl Trails {
 /// graph alone. O(edges · log edges) for vertices of bounded degree.
 pub fn trails(graph: &Graph) -> Trails {
     let stars = Stars::new(graph);
-    let mut pairing = Pairing {
-        graph,
-        mate: vec![NONE; graph.edges.len() * 2],
-    };
+    let mut pairing = Pairing { graph, mate: vec![NONE; graph.edges.len() * 2] };
     for vertex in 0..graph.positions.len() as u32 {
         pairing.pair_straightest(stars.of(vertex));
     }
@@ -85,11 +82,7 @@ impl Pairing<'_> {
     /// How sharply a stroke that comes in along one half-edge turns to leave along the other:
     /// 0 straight on, 1 a right angle, 2 back; 0 where it ends.
     fn bend(&self, a: u32, b: u32) -> f64 {
-        if a == NONE || b == NONE {
-            0.0
-        } else {
-            1.0 + self.direction(a).dot(self.direction(b))
-        }
+        if a == NONE || b == NONE { 0.0 } else { 1.0 + self.direction(a).dot(self.direction(b)) }
     }
 
     fn join(&mut self, a: u32, b: u32) {
@@ -188,9 +181,7 @@ impl Pairing<'_> {
                 if drawn[h as usize / 2] || (!closed && self.mate[h as usize] != NONE) {
                     continue;
                 }
-                trails
-                    .vertices
-                    .push(self.graph.edges[h as usize / 2][h as usize & 1]);
+                trails.vertices.push(self.graph.edges[h as usize / 2][h as usize & 1]);
                 self.follow(h, |h| {
                     drawn[h as usize / 2] = true;
                     trails.vertices.push(target(self.graph, h));
@@ -220,11 +211,7 @@ fn splice_closed(pairing: &mut Pairing<'_>, stars: &Stars) {
             .filter(|&h| pairing.mate[h as usize] == NONE || h < pairing.mate[h as usize])
             .collect();
         for (i, &a) in passes.iter().enumerate() {
-            let window = if star.len() <= MAX_DEGREE_GREEDY {
-                passes.len()
-            } else {
-                i + 2
-            };
+            let window = if star.len() <= MAX_DEGREE_GREEDY { passes.len() } else { i + 2 };
             for &c in passes.iter().take(window).skip(i + 1) {
                 if sets.can_splice(a, c) {
                     splices.push((repairing(pairing, a, c).0, a, c));
@@ -254,11 +241,7 @@ fn repairing(pairing: &Pairing<'_>, a: u32, c: u32) -> (f64, [(u32, u32); 2]) {
     let now = pairing.bend(a, b) + pairing.bend(c, d);
     let first = pairing.bend(a, c) + pairing.bend(b, d);
     let second = pairing.bend(a, d) + pairing.bend(b, c);
-    if first <= second {
-        (first - now, [(a, c), (b, d)])
-    } else {
-        (second - now, [(a, d), (b, c)])
-    }
+    if first <= second { (first - now, [(a, c), (b, d)]) } else { (second - now, [(a, d), (b, c)]) }
 }
 
 /// Which trails have been spliced together.
@@ -285,11 +268,7 @@ impl TrailSets {
                 }
             }
         }
-        Self {
-            trail_of_edge,
-            parent: (0..open.len() as u32).collect(),
-            open,
-        }
+        Self { trail_of_edge, parent: (0..open.len() as u32).collect(), open }
     }
 
     fn root(&mut self, half_edge: u32) -> u32 {
