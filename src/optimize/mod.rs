@@ -66,7 +66,7 @@ impl Effort {
                     0
                 }
             }
-            Self::Best => 20_000 + 3 * n,
+            Self::Best => (20_000 + 3 * n).min(200 * n),
             Self::Within(_) => u64::MAX,
         }
     }
