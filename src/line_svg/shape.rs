@@ -186,12 +186,12 @@ impl Outline {
                 PathEl::MoveTo(p) => self.move_to(p),
                 PathEl::LineTo(p) => self.line_to(p),
                 PathEl::QuadTo(..) | PathEl::CurveTo(..) => self.curve(el),
-                PathEl::ClosePath => {
-                    self.snap_last(self.start);
-                    self.close();
-                }
+                PathEl::ClosePath => {}
             }
         }
+        // It ends where it begins, whatever the sines were rounded to.
+        self.snap_last(self.start);
+        self.close();
     }
 }
 

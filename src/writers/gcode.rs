@@ -114,7 +114,7 @@ const PLACEHOLDERS: [&str; 10] =
     ["x", "y", "feed", "layer", "name", "color", "pen_width", "width", "height", "title"];
 
 impl Profile {
-    /// A built-in profile: `grbl-servo`, `grbl-z` or `marlin`.
+    /// A built-in profile: `grbl-servo`, `grbl-z`, `grbl-laser` or `marlin`.
     ///
     /// # Errors
     /// [`Error::UnknownProfile`].

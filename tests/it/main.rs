@@ -1,4 +1,6 @@
 //! All integration tests, in one binary.
 
 mod closed_forms;
+mod line_svg;
 mod optimize;
+mod plotter_formats;
