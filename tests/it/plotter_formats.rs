@@ -80,7 +80,7 @@ fn read_hpgl(text: &str) -> (Vec<Vec<DVec2>>, Vec<u32>) {
             _ => panic!("unknown instruction {instruction}"),
         }
         if matches!(name, "PA" | "PR" | "PU" | "PD") {
-            assert!(numbers.len() % 2 == 0 && instruction.len() < 250);
+            assert!(numbers.len().is_multiple_of(2) && instruction.len() < 250);
             for xy in numbers.chunks(2) {
                 let p = dvec2(xy[0], xy[1]);
                 here = if relative { here + p } else { p };
