@@ -404,3 +404,23 @@ fn layers_are_split_between_strokes() {
     assert_eq!(parts, [(1, 2), (2, 2), (3, 1)]);
     assert_eq!(hiddenline::optimize::split_by_distance(&plot, 500.0), plot);
 }
+
+#[test]
+fn closed_trails_that_cross_are_one_stroke() {
+    let square = |low: f64| {
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)];
+        let points: Vec<DVec2> = corners.map(|(x, y)| dvec2(low + x, low + y)).to_vec();
+        let middle = |pair: &[DVec2]| [pair[0], pair[0].lerp(pair[1], 0.5)];
+        let mut ring: Vec<DVec2> = points.windows(2).flat_map(middle).collect();
+        ring.push(points[0]);
+        ring
+    };
+    // They pass straight through each other at (1, 2) and (2, 1); a spur ends at (3, 4).
+    let spur = vec![dvec2(3.0, 3.0), dvec2(3.0, 4.0)];
+    for (lines, n) in
+        [(vec![square(0.0), square(1.0)], 1), (vec![square(0.0), square(1.0), spur], 1)]
+    {
+        let joined = optimize_lines(&polylines(&lines), None, &exact(Effort::Fast)).lines;
+        assert_eq!(joined.len(), n);
+    }
+}
