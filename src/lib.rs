@@ -53,6 +53,10 @@ pub mod draw;
 
 pub mod plot;
 
+pub mod line_svg;
+
+pub mod optimize;
+
 pub mod page;
 
 pub mod writers;

@@ -1,6 +1,12 @@
 //! Files: one writer a format, each a function of a finished page and a stream.
 
+mod clip;
+mod decimal;
+pub mod dxf;
+pub mod gcode;
+pub mod hpgl;
 pub mod json;
+pub mod pdf;
 pub mod png;
 pub mod svg;
 

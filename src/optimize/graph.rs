@@ -1,0 +1,238 @@
+//! A drawing as a graph: where strokes meet, and each piece of ink between two such points once.
+
+use glam::DVec2;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::plot::Polylines;
+
+/// Ink as vertices and straight edges, nothing twice.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Graph {
+    /// Page positions in millimetres, by growing x, then y.
+    pub positions: Vec<DVec2>,
+    /// Pairs of different vertices, the lower one first, in growing order, each pair once.
+    pub edges: Vec<[u32; 2]>,
+    /// Vertices at which the pen is only set down: strokes without extent, where no edge ends.
+    pub dots: Vec<u32>,
+}
+
+/// How the points at which strokes meet are known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Joints<'a> {
+    /// Points within this distance in millimetres are one; zero joins equal points only.
+    ///
+    /// Points are visited by growing x, then y. Each moves to the nearest point kept so far that
+    /// is within the distance, or is kept itself. So no point moves farther than the distance,
+    /// however long the chains of near points are, and the order of the strokes does not matter.
+    Near(f64),
+    /// Numbers for every point of every polyline, in order: equal numbers are one point, the
+    /// first of them. Equal points are joined as well. Points without a number are ignored.
+    Numbered(&'a [u32]),
+}
+
+impl Graph {
+    /// Builds the graph of `lines`; points that are not finite are left out with their segments.
+    ///
+    /// O(n log n) time, about 60 bytes a point.
+    pub fn new(lines: &Polylines, joints: Joints<'_>) -> Self {
+        let points = joined_points(lines, joints);
+        let tolerance = match joints {
+            Joints::Near(tolerance) => tolerance.max(0.0),
+            Joints::Numbered(_) => 0.0,
+        };
+        let (positions, vertex_of) = weld(&points, tolerance);
+        let mut keys = Vec::with_capacity(points.len());
+        let mut dots = Vec::new();
+        let mut start = 0;
+        for line in lines.iter() {
+            let vertices = &vertex_of[start..start + line.len()];
+            start += line.len();
+            let first = vertices.first().copied().unwrap_or(NONE);
+            if first != NONE && vertices.iter().all(|&v| v == first) {
+                dots.push(first);
+                continue;
+            }
+            for pair in vertices.windows(2) {
+                if pair[0] != pair[1] && pair[0] != NONE && pair[1] != NONE {
+                    keys.push(edge_key(pair[0], pair[1]));
+                }
+            }
+        }
+        let mut graph = Self { positions, edges: unique_edges(keys), dots };
+        graph.drop_covered_dots();
+        graph
+    }
+
+    /// Leaves out repeated dots and those an edge passes over at its end.
+    fn drop_covered_dots(&mut self) {
+        let mut inked = vec![false; self.positions.len()];
+        for edge in &self.edges {
+            for &v in edge {
+                inked[v as usize] = true;
+            }
+        }
+        self.dots.sort_unstable();
+        self.dots.dedup();
+        self.dots.retain(|&v| !inked[v as usize]);
+    }
+
+    /// Total length of the edges in millimetres.
+    pub fn length_mm(&self) -> f64 {
+        self.edges.iter().map(|&[a, b]| self.position(a).distance(self.position(b))).sum()
+    }
+
+    /// Position of a vertex.
+    pub(super) fn position(&self, vertex: u32) -> DVec2 {
+        self.positions[vertex as usize]
+    }
+}
+
+/// No vertex, no half-edge.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// An edge as one number, the lower vertex in the upper half.
+pub(super) fn edge_key(a: u32, b: u32) -> u64 {
+    (u64::from(a.min(b)) << 32) | u64::from(a.max(b))
+}
+
+/// Sorts edges and leaves out the repeated ones.
+pub(super) fn unique_edges(mut keys: Vec<u64>) -> Vec<[u32; 2]> {
+    keys.par_sort_unstable();
+    keys.dedup();
+    keys.into_iter().map(|key| [(key >> 32) as u32, key as u32]).collect()
+}
+
+/// All points in order, with those of equal number moved to the first of them.
+fn joined_points(lines: &Polylines, joints: Joints<'_>) -> Vec<DVec2> {
+    // Adding zero turns −0 into 0, so that equal points have equal bits.
+    let mut points: Vec<DVec2> = lines.iter().flatten().map(|&p| p + DVec2::ZERO).collect();
+    if let Joints::Numbered(numbers) = joints {
+        let mut first_of = FxHashMap::default();
+        for (point, &number) in points.iter_mut().zip(numbers) {
+            if point.is_finite() {
+                *point = *first_of.entry(number).or_insert(*point);
+            }
+        }
+    }
+    points
+}
+
+/// Kept positions in order, and for every point the number of the one it moves to.
+fn weld(points: &[DVec2], tolerance: f64) -> (Vec<DVec2>, Vec<u32>) {
+    let mut order: Vec<u32> =
+        (0..points.len() as u32).filter(|&i| points[i as usize].is_finite()).collect();
+    let key = |i: u32| points[i as usize];
+    order.par_sort_unstable_by(|&i, &j| {
+        let (a, b) = (key(i), key(j));
+        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(&j))
+    });
+    let mut kept: Vec<DVec2> = Vec::new();
+    let mut vertex_of = vec![NONE; points.len()];
+    let mut cells = Cells::new(tolerance);
+    let mut last: Option<(DVec2, u32)> = None;
+    for &i in &order {
+        let p = key(i);
+        let vertex = match last {
+            Some((q, vertex)) if q == p => vertex,
+            _ => cells.nearest(&kept, p).unwrap_or_else(|| {
+                kept.push(p);
+                let vertex = kept.len() as u32 - 1;
+                cells.insert(p, vertex);
+                vertex
+            }),
+        };
+        last = Some((p, vertex));
+        vertex_of[i as usize] = vertex;
+    }
+    (kept, vertex_of)
+}
+
+/// Kept points by square cells as wide as the tolerance, so that near ones lie in nine cells.
+struct Cells {
+    size: f64,
+    heads: FxHashMap<(i64, i64), u32>,
+    next: Vec<u32>,
+}
+
+impl Cells {
+    fn new(size: f64) -> Self {
+        Self { size, heads: FxHashMap::default(), next: Vec::new() }
+    }
+
+    fn cell(&self, p: DVec2) -> (i64, i64) {
+        let cell = (p / self.size).floor();
+        (cell.x as i64, cell.y as i64)
+    }
+
+    fn insert(&mut self, p: DVec2, vertex: u32) {
+        if self.size > 0.0 {
+            let head = self.heads.insert(self.cell(p), vertex).unwrap_or(NONE);
+            self.next.push(head);
+        }
+    }
+
+    /// The kept point nearest to `p` within the cell size, the earlier one of two as near.
+    fn nearest(&self, kept: &[DVec2], p: DVec2) -> Option<u32> {
+        if self.size <= 0.0 {
+            return None;
+        }
+        let (x, y) = self.cell(p);
+        let mut best: Option<(f64, u32)> = None;
+        // Points come by growing x: none kept lies in a column to the right.
+        for column in [x.saturating_sub(1), x] {
+            for row in [y.saturating_sub(1), y, y.saturating_add(1)] {
+                let mut vertex = self.heads.get(&(column, row)).copied().unwrap_or(NONE);
+                while vertex != NONE {
+                    let distance = kept[vertex as usize].distance_squared(p);
+                    if distance <= self.size * self.size
+                        && best.is_none_or(|(d, v)| distance < d || (distance == d && vertex < v))
+                    {
+                        best = Some((distance, vertex));
+                    }
+                    vertex = self.next[vertex as usize];
+                }
+            }
+        }
+        best.map(|(_, vertex)| vertex)
+    }
+}
+
+/// The half-edges that leave each vertex. Half-edge `2e + s` leaves vertex `s` of edge `e`.
+pub(super) struct Stars {
+    starts: Vec<u32>,
+    half_edges: Vec<u32>,
+}
+
+impl Stars {
+    pub(super) fn new(graph: &Graph) -> Self {
+        let n = graph.positions.len();
+        let mut starts = vec![0u32; n + 1];
+        for &v in graph.edges.iter().flatten() {
+            starts[v as usize + 1] += 1;
+        }
+        for i in 0..n {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut half_edges = vec![0u32; graph.edges.len() * 2];
+        for (e, edge) in graph.edges.iter().enumerate() {
+            for (side, &v) in edge.iter().enumerate() {
+                half_edges[next[v as usize] as usize] = (2 * e + side) as u32;
+                next[v as usize] += 1;
+            }
+        }
+        Self { starts, half_edges }
+    }
+
+    /// Half-edges that leave `vertex`, by growing number.
+    pub(super) fn of(&self, vertex: u32) -> &[u32] {
+        let range = self.starts[vertex as usize]..self.starts[vertex as usize + 1];
+        &self.half_edges[range.start as usize..range.end as usize]
+    }
+}
+
+/// Vertex at the far end of a half-edge.
+pub(super) fn target(graph: &Graph, half_edge: u32) -> u32 {
+    graph.edges[half_edge as usize / 2][1 - (half_edge as usize & 1)]
+}

@@ -1,0 +1,61 @@
+//! A first route: shortest links first (greedy edge, as in Bentley 1992), which leaves the local
+//! search less to mend than always going on to the nearest stroke.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::graph::NONE;
+use super::nearest::NearestPoints;
+
+/// Entry ends in drawing order. Stroke `s` has the ends `2s` and `2s + 1`; `neighbors` lists
+/// `n_neighbors` near ends for each, filled up with `NONE`.
+///
+/// Links between neighbors are made by growing length where both ends are free and no ring
+/// results; the chains are then visited from the page's origin on, always the nearest next.
+pub(super) fn greedy(ends: &[DVec2], neighbors: &[u32], n_neighbors: usize) -> Vec<u32> {
+    let mut pairs: Vec<(f64, u32, u32)> = neighbors
+        .par_iter()
+        .enumerate()
+        .filter(|&(_, &j)| j != NONE)
+        .map(|(k, &j)| {
+            let i = (k / n_neighbors) as u32;
+            (ends[i as usize].distance_squared(ends[j as usize]), i.min(j), i.max(j))
+        })
+        .collect();
+    pairs.par_sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    let mut linked = vec![NONE; ends.len()];
+    // For an end of a chain, the chain's other end.
+    let mut far: Vec<u32> = (0..ends.len() as u32).map(|i| i ^ 1).collect();
+    for (_, i, j) in pairs {
+        let free = linked[i as usize] == NONE && linked[j as usize] == NONE;
+        if free && far[i as usize] != j {
+            linked[i as usize] = j;
+            linked[j as usize] = i;
+            let (a, b) = (far[i as usize], far[j as usize]);
+            far[a as usize] = b;
+            far[b as usize] = a;
+        }
+    }
+    let free: Vec<u32> = (0..ends.len() as u32).filter(|&i| linked[i as usize] == NONE).collect();
+    let points: Vec<DVec2> = free.iter().map(|&i| ends[i as usize]).collect();
+    let mut left = NearestPoints::new(&points);
+    let mut entries = Vec::with_capacity(ends.len() / 2);
+    let mut here = DVec2::ZERO;
+    while let Some(point) = left.nearest(here) {
+        left.remove(point);
+        let mut entry = free[point as usize];
+        loop {
+            entries.push(entry);
+            match linked[entry as usize ^ 1] {
+                NONE => break,
+                next => entry = next,
+            }
+        }
+        let exit = entry ^ 1;
+        if let Ok(other) = free.binary_search(&exit) {
+            left.remove(other as u32);
+        }
+        here = ends[exit as usize];
+    }
+    entries
+}

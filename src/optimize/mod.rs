@@ -1,0 +1,180 @@
+//! From strokes to paper: nothing drawn twice, the fewest strokes, a short way between them.
+//!
+//! ```text
+//!  lines ─► graph ─────► overlap ────► trails ───► simplify ─► order ─► lines
+//!           where they   shared ink    fewest,     fewer       short way
+//!           meet         once          straightest points      with the pen up
+//! ```
+//!
+//! Each layer is one pen's and is done apart from the others. What time the result takes on a
+//! machine is told by [`estimate`].
+
+use std::time::Duration;
+
+use glam::DVec2;
+
+use crate::plot::{Layer, Plot, Polylines};
+
+mod graph;
+pub use graph::{Graph, Joints};
+
+mod overlap;
+pub use overlap::remove_overlaps;
+
+mod trails;
+pub use trails::{Trails, trails};
+
+mod simplify;
+
+mod nearest;
+
+mod greedy;
+
+mod tour;
+
+mod order;
+pub use order::{Ordered, order};
+
+pub mod estimate;
+
+mod split;
+pub use split::split_by_distance;
+
+/// How long to search for a short way between the strokes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Strokes stay in the order in which they were joined.
+    None,
+    /// Nearest stroke first, then 2-opt and Or-opt.
+    Fast,
+    /// The same, then a number of random changes that grows with the number of strokes.
+    Best,
+    /// The same for as long as this: the one effort whose outcome depends on the clock.
+    Within(Duration),
+}
+
+impl Effort {
+    /// Random changes to try on `n` strokes.
+    fn n_changes(self, n: usize) -> u64 {
+        let n = n as u64;
+        match self {
+            Self::None => 0,
+            Self::Fast => {
+                if n <= 2_000 {
+                    500
+                } else {
+                    0
+                }
+            }
+            Self::Best => (20_000 + 3 * n).min(200 * n),
+            Self::Within(_) => u64::MAX,
+        }
+    }
+}
+
+/// What to do with a drawing's strokes; lengths in page millimetres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Points at most this far apart are one joint; zero joins equal points only, `None` joins
+    /// nothing and keeps what is drawn twice.
+    pub join_tolerance_mm: Option<f64>,
+    /// Ink that runs along other ink at most this far from it is drawn once; zero finds exactly
+    /// collinear ink only.
+    pub overlap_mm: f64,
+    /// How far points left out may be from the stroke; zero leaves out exactly collinear ones.
+    pub simplify_mm: f64,
+    /// Strokes shorter than this are dropped, and those whose ends are nearer to each other than
+    /// this are closed. Zero does neither.
+    pub shortest_mm: f64,
+    /// How long to search for a short way.
+    pub effort: Effort,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            join_tolerance_mm: Some(0.001),
+            overlap_mm: 0.0005,
+            simplify_mm: 0.0,
+            shortest_mm: 0.0,
+            effort: Effort::Fast,
+        }
+    }
+}
+
+/// Joins, simplifies and orders the strokes of every layer; returns the new page and the random
+/// changes that were tried on all of them.
+pub fn optimize(plot: &Plot, options: &Options) -> (Plot, u64) {
+    let mut n_changes = 0;
+    let layers = plot
+        .layers
+        .iter()
+        .map(|layer| {
+            let ordered = optimize_lines(&layer.lines, None, options);
+            n_changes += ordered.n_changes;
+            Layer { lines: ordered.lines, ..layer.clone() }
+        })
+        .collect();
+    (Plot { layers, ..plot.clone() }, n_changes)
+}
+
+/// Joins, simplifies and orders one pen's strokes.
+///
+/// `numbers` may give each point of each stroke, in order, the number of the vertex it is; points
+/// of equal number, and equal points, are then the joints, and the join tolerance is not used.
+pub fn optimize_lines(lines: &Polylines, numbers: Option<&[u32]>, options: &Options) -> Ordered {
+    let joined = match options.join_tolerance_mm {
+        None => simplified(lines.iter().map(|line| (line.to_vec(), None)), options),
+        Some(tolerance) => {
+            let joints = numbers.map_or(Joints::Near(tolerance), Joints::Numbered);
+            let mut graph = Graph::new(lines, joints);
+            remove_overlaps(&mut graph, options.overlap_mm);
+            let trails = trails(&graph);
+            let degree = degrees(&graph);
+            let strokes = trails.iter().map(|trail| {
+                let points = trail.iter().map(|&v| graph.position(v)).collect();
+                let joints = trail.iter().map(|&v| degree[v as usize] != 2).collect();
+                (points, Some(joints))
+            });
+            let dots = graph.dots.iter().map(|&v| (vec![graph.position(v); 2], None));
+            simplified(strokes.chain(dots), options)
+        }
+    };
+    order(&joined, options.effort)
+}
+
+/// Edges that end at each vertex.
+fn degrees(graph: &Graph) -> Vec<u32> {
+    let mut degrees = vec![0; graph.positions.len()];
+    for &v in graph.edges.iter().flatten() {
+        degrees[v as usize] += 1;
+    }
+    degrees
+}
+
+/// Strokes with fewer points, without the shortest; joints are kept.
+fn simplified(
+    strokes: impl Iterator<Item = (Vec<DVec2>, Option<Vec<bool>>)>,
+    options: &Options,
+) -> Polylines {
+    let mut result = Polylines::default();
+    for (points, joints) in strokes {
+        let is_joint = |i: usize| joints.as_ref().is_some_and(|joints| joints[i]);
+        let mut line = simplify::simplify(&points, is_joint, options.simplify_mm);
+        if options.shortest_mm > 0.0 {
+            let length: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            if length < options.shortest_mm {
+                continue;
+            }
+            if let (Some(&first), Some(&last)) = (line.first(), line.last())
+                && line.len() > 2
+                && first != last
+                && first.distance(last) < options.shortest_mm
+            {
+                line.push(first);
+            }
+        }
+        result.push(line);
+    }
+    result
+}

@@ -1,0 +1,193 @@
+//! Ink that lies on other ink: edges that run along each other are cut where either one ends, and
+//! the pieces they share are kept once.
+//!
+//! ```text
+//!   A ────────────────── B             A ──── C ────────── B
+//!          C ─────────────── D    ─►          C ────────── B ─── D
+//! ```
+//!
+//! A vertex cuts an edge only if another edge runs on from it along the cut one. So lines that
+//! merely touch or cross stay as they are.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::graph::{Graph, Stars, edge_key, target, unique_edges};
+
+/// Cuts edges where others end on them and run along them, and keeps shared pieces once.
+///
+/// With `tolerance_mm` of zero only exactly collinear edges overlap (robust's `orient2d`);
+/// otherwise those that deviate no farther than that. Ink moves by `tolerance_mm` at most.
+///
+/// Vertices are found in a grid whose cells hold about one, or are so wide that edges cross four
+/// each on average; expected O(vertices + edges) for drawings of strokes much shorter than the
+/// page, and O(vertices · edges) at worst, when all are as long as the page.
+pub fn remove_overlaps(graph: &mut Graph, tolerance_mm: f64) {
+    let tolerance = tolerance_mm.max(0.0);
+    let Some(grid) = Grid::new(graph, tolerance) else {
+        return;
+    };
+    let stars = Stars::new(graph);
+    let shared: &Graph = graph;
+    let cuts: Vec<(u32, Vec<u32>)> = (0..shared.edges.len() as u32)
+        .into_par_iter()
+        .filter_map(|e| {
+            let inner = inner_vertices(shared, &stars, &grid, e, tolerance);
+            (!inner.is_empty()).then_some((e, inner))
+        })
+        .collect();
+    if cuts.is_empty() {
+        return;
+    }
+    let mut keys: Vec<u64> = Vec::with_capacity(graph.edges.len() + cuts.len());
+    let mut next_cut = cuts.iter().peekable();
+    for (e, &[a, b]) in graph.edges.iter().enumerate() {
+        match next_cut.next_if(|cut| cut.0 as usize == e) {
+            None => keys.push(edge_key(a, b)),
+            Some((_, inner)) => {
+                let chain: Vec<u32> =
+                    std::iter::once(a).chain(inner.iter().copied()).chain([b]).collect();
+                keys.extend(chain.windows(2).map(|pair| edge_key(pair[0], pair[1])));
+            }
+        }
+    }
+    graph.edges = unique_edges(keys);
+}
+
+/// Vertices that cut edge `e`, from its first to its second vertex.
+fn inner_vertices(graph: &Graph, stars: &Stars, grid: &Grid, e: u32, tolerance: f64) -> Vec<u32> {
+    let [a, b] = graph.edges[e as usize];
+    let edge = Line { from: graph.position(a), to: graph.position(b), tolerance };
+    let mut inner: Vec<(f64, u32)> = Vec::new();
+    grid.near(edge.from, edge.to, tolerance, |vertex| {
+        let p = graph.position(vertex);
+        if vertex != a && vertex != b && edge.passes(p) {
+            let runs_along = stars.of(vertex).iter().any(|&h| {
+                let other = target(graph, h);
+                let q = graph.position(other);
+                let ahead = (q - p).dot(edge.to - edge.from);
+                let end = if ahead > 0.0 { b } else { a };
+                let onward = Line { from: p, to: q, tolerance };
+                ahead != 0.0
+                    && (other == end || edge.passes(q) || onward.passes(graph.position(end)))
+            });
+            if runs_along {
+                inner.push(((p - edge.from).dot(edge.to - edge.from), vertex));
+            }
+        }
+    });
+    inner.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    inner.into_iter().map(|(_, vertex)| vertex).collect()
+}
+
+/// A straight piece with the deviation at which ink still counts as lying on it.
+struct Line {
+    from: DVec2,
+    to: DVec2,
+    tolerance: f64,
+}
+
+impl Line {
+    /// Whether `p` lies on the piece, strictly between its ends.
+    fn passes(&self, p: DVec2) -> bool {
+        let along = self.to - self.from;
+        let t = (p - self.from).dot(along);
+        if t <= 0.0 || t >= along.length_squared() {
+            return false;
+        }
+        let coord = |p: DVec2| robust::Coord { x: p.x, y: p.y };
+        let area = robust::orient2d(coord(self.from), coord(self.to), coord(p));
+        area.abs() <= self.tolerance * along.length()
+    }
+}
+
+/// Vertices by square cells.
+struct Grid {
+    low: DVec2,
+    cell: f64,
+    n_columns: usize,
+    n_rows: usize,
+    starts: Vec<u32>,
+    vertices: Vec<u32>,
+}
+
+impl Grid {
+    fn new(graph: &Graph, tolerance: f64) -> Option<Self> {
+        let first = *graph.positions.first()?;
+        let (low, high) =
+            graph.positions.iter().fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
+        let n = graph.positions.len() as f64;
+        let size = high - low;
+        let cell = (size.x * size.y / n)
+            .sqrt()
+            .max(size.max_element() / n)
+            .max(graph.length_mm() / (4.0 * n))
+            .max(tolerance);
+        if !(cell > 0.0 && cell.is_finite()) {
+            return None;
+        }
+        let mut grid = Self {
+            low,
+            cell,
+            n_columns: (size.x / cell) as usize + 1,
+            n_rows: (size.y / cell) as usize + 1,
+            starts: Vec::new(),
+            vertices: vec![0; graph.positions.len()],
+        };
+        let mut starts = vec![0u32; grid.n_columns * grid.n_rows + 1];
+        let cells: Vec<usize> = graph
+            .positions
+            .iter()
+            .map(|p| grid.row(p.y) * grid.n_columns + grid.column(p.x))
+            .collect();
+        for &c in &cells {
+            starts[c + 1] += 1;
+        }
+        for c in 1..starts.len() {
+            starts[c] += starts[c - 1];
+        }
+        let mut next = starts.clone();
+        for (vertex, &c) in cells.iter().enumerate() {
+            grid.vertices[next[c] as usize] = vertex as u32;
+            next[c] += 1;
+        }
+        grid.starts = starts;
+        Some(grid)
+    }
+
+    fn column(&self, x: f64) -> usize {
+        (((x - self.low.x) / self.cell) as usize).min(self.n_columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.low.y) / self.cell) as usize).min(self.n_rows - 1)
+    }
+
+    /// Calls `visit` with every vertex within `margin` of the segment, and with some others.
+    fn near(&self, from: DVec2, to: DVec2, margin: f64, mut visit: impl FnMut(u32)) {
+        let (left, right) = if from.x <= to.x { (from, to) } else { (to, from) };
+        let slope = (right.y - left.y) / (right.x - left.x);
+        let (low_y, high_y) = (from.y.min(to.y), from.y.max(to.y));
+        for column in self.column(left.x - margin)..=self.column(right.x + margin) {
+            let x0 = self.low.x + column as f64 * self.cell;
+            // Wider than the column by a quarter on both sides: more than rounding and margin
+            // ever are, as no cell is narrower than the margin.
+            let slack = 0.25 * self.cell + margin;
+            let (y0, y1) = (
+                left.y + (x0 - slack - left.x) * slope,
+                left.y + (x0 + self.cell + slack - left.x) * slope,
+            );
+            // A vertical piece has no slope: both are not numbers, and the whole height is kept.
+            let (bottom, top) = if slope.is_finite() {
+                (y0.min(y1).clamp(low_y, high_y), y0.max(y1).clamp(low_y, high_y))
+            } else {
+                (low_y, high_y)
+            };
+            for row in self.row(bottom - slack)..=self.row(top + slack) {
+                let c = row * self.n_columns + column;
+                let range = self.starts[c] as usize..self.starts[c + 1] as usize;
+                self.vertices[range].iter().for_each(|&vertex| visit(vertex));
+            }
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! HPGL for real pen plotters: whole units, y up, nothing beyond the machine's limits.
+//!
+//! Positions are rounded first and then subtracted, so that errors do not add up along a stroke.
+//! Instructions are short, since plotters of that age have buffers of a few hundred bytes. No crate
+//! writes HPGL.
+
+use std::io;
+
+use glam::{DVec2, dvec2};
+use serde::Deserialize;
+
+use super::clip::clip;
+use crate::plot::Plot;
+
+/// Points in one `PD` instruction.
+const MAX_POINTS: usize = 16;
+/// Millimeters by which a page may differ from the paper it is drawn on.
+const SIZE_TOLERANCE_MM: f64 = 1.0;
+
+/// A plotter.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// Name on the command line.
+    pub name: String,
+    /// Name on the machine.
+    pub title: String,
+    /// Plotter unit in millimetres.
+    pub unit: f64,
+    /// Pens it holds.
+    pub pens: u32,
+    /// Value of `VS`, the pen's speed in cm/s; the machine's own where there is none.
+    #[serde(default)]
+    pub speed: Option<u32>,
+    /// Papers it takes.
+    pub paper: Vec<Paper>,
+}
+
+/// A paper in a plotter.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Paper {
+    /// Names, the usual one first.
+    pub names: Vec<String>,
+    /// What to set or to know.
+    #[serde(default)]
+    pub note: String,
+    /// Width and height in millimetres.
+    pub size: [f64; 2],
+    /// Hard clip limits along x in plotter units.
+    pub x: [i32; 2],
+    /// Hard clip limits along y in plotter units.
+    pub y: [i32; 2],
+    /// Where plotter position (0, 0) is, in millimetres from the top left corner.
+    pub origin: [f64; 2],
+    /// Whether the page is drawn upside down.
+    #[serde(default)]
+    pub turned: bool,
+    /// Argument of `PS`.
+    #[serde(default)]
+    pub ps: Option<u32>,
+    /// Where the pen is left, in plotter units.
+    pub park: [i32; 2],
+}
+
+/// A plotter with a paper in it: what [`write`] draws on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// The plotter.
+    pub machine: Machine,
+    /// The paper.
+    pub paper: Paper,
+}
+
+/// Why a page cannot be drawn on a plotter.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// No such plotter.
+    #[error("unknown plotter {name:?}; known are {known}")]
+    UnknownMachine {
+        /// The name asked for.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// No such paper.
+    #[error("{machine} takes no paper called {name:?}; it takes {known}")]
+    UnknownPaper {
+        /// The plotter.
+        machine: String,
+        /// The name asked for.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// No paper as large as the page.
+    #[error("{machine} takes no paper of {width_mm} × {height_mm} mm; it takes {known}")]
+    NoPaperOfSize {
+        /// The plotter.
+        machine: String,
+        /// The page's width.
+        width_mm: f64,
+        /// The page's height.
+        height_mm: f64,
+        /// All names.
+        known: String,
+    },
+    /// A layer's number is beyond the plotter's pens.
+    #[error("layer {layer} needs a pen that {machine} does not have: it holds {pens}")]
+    NoSuchPen {
+        /// The plotter.
+        machine: String,
+        /// The layer's number.
+        layer: u32,
+        /// How many pens there are.
+        pens: u32,
+    },
+    /// A list of plotters does not read.
+    #[error("plotter profiles: {0}")]
+    Toml(#[from] toml::de::Error),
+}
+
+/// The plotters known.
+///
+/// # Errors
+/// None but for a defect in the list itself.
+pub fn machines() -> Result<Vec<Machine>, Error> {
+    machines_from(include_str!("hpgl_machines.toml"))
+}
+
+/// Reads plotters from TOML: an array of tables `machine`, each with an array `paper`.
+///
+/// # Errors
+/// [`Error::Toml`] with the line.
+pub fn machines_from(text: &str) -> Result<Vec<Machine>, Error> {
+    #[derive(Deserialize)]
+    struct List {
+        machine: Vec<Machine>,
+    }
+    Ok(toml::from_str::<List>(text)?.machine)
+}
+
+impl Profile {
+    /// The plotter `machine` with the named paper, or the one of the page's size, either way up.
+    ///
+    /// # Errors
+    /// Unknown names, no paper of that size, and layers whose number is beyond the pens.
+    pub fn new(plot: &Plot, machine: &str, paper: Option<&str>) -> Result<Self, Error> {
+        let mut machines = machines()?;
+        let known = machines.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ");
+        let index = machines
+            .iter()
+            .position(|m| m.name.eq_ignore_ascii_case(machine))
+            .ok_or(Error::UnknownMachine { name: machine.to_owned(), known })?;
+        Self::on(plot, machines.swap_remove(index), paper)
+    }
+
+    /// As [`Profile::new`], on a plotter of one's own.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn on(plot: &Plot, machine: Machine, paper: Option<&str>) -> Result<Self, Error> {
+        let known = || {
+            let names = machine.paper.iter().filter_map(|paper| paper.names.first());
+            names.map(String::as_str).collect::<Vec<_>>().join(", ")
+        };
+        let paper = match paper {
+            Some(name) => machine
+                .paper
+                .iter()
+                .find(|paper| paper.names.iter().any(|n| n.eq_ignore_ascii_case(name)))
+                .ok_or_else(|| Error::UnknownPaper {
+                    machine: machine.title.clone(),
+                    name: name.to_owned(),
+                    known: known(),
+                })?,
+            None => machine
+                .paper
+                .iter()
+                .find(|paper| fits(plot, paper, false) || fits(plot, paper, true))
+                .ok_or_else(|| Error::NoPaperOfSize {
+                    machine: machine.title.clone(),
+                    width_mm: plot.width_mm,
+                    height_mm: plot.height_mm,
+                    known: known(),
+                })?,
+        };
+        let beyond = plot.layers.iter().find(|layer| !(1..=machine.pens).contains(&layer.number));
+        if let Some(layer) = beyond {
+            return Err(Error::NoSuchPen {
+                machine: machine.title.clone(),
+                layer: layer.number,
+                pens: machine.pens,
+            });
+        }
+        Ok(Self { paper: paper.clone(), machine })
+    }
+}
+
+fn fits(plot: &Plot, paper: &Paper, sideways: bool) -> bool {
+    let [width, height] = if sideways { [paper.size[1], paper.size[0]] } else { paper.size };
+    (plot.width_mm - width).abs() <= SIZE_TOLERANCE_MM
+        && (plot.height_mm - height).abs() <= SIZE_TOLERANCE_MM
+}
+
+/// Writes `plot` for the plotter. Pages upright are turned a quarter to the left if only that fits
+/// the paper; what lies beyond the plotter's limits is cut off.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Result<()> {
+    let Profile { machine, paper } = profile;
+    write!(out, "IN;DF;")?;
+    if let Some(ps) = paper.ps {
+        write!(out, "PS{ps};")?;
+    }
+    let low = dvec2(f64::from(paper.x[0]), f64::from(paper.y[0]));
+    let high = dvec2(f64::from(paper.x[1]), f64::from(paper.y[1]));
+    for layer in &plot.layers {
+        if layer.lines.is_empty() {
+            continue;
+        }
+        write!(out, "\nSP{};", layer.number)?;
+        if let Some(speed) = machine.speed {
+            write!(out, "VS{speed};")?;
+        }
+        for line in layer.lines.iter() {
+            let units: Vec<DVec2> = line.iter().map(|&p| to_units(p, plot, profile)).collect();
+            for piece in clip(&units, low, high) {
+                write_stroke(&piece, out)?;
+            }
+        }
+    }
+    writeln!(out, "\nPA;PU{},{};SP0;IN;", paper.park[0], paper.park[1])
+}
+
+/// Page millimetres to plotter units, not yet rounded.
+fn to_units(p: DVec2, plot: &Plot, profile: &Profile) -> DVec2 {
+    let Profile { machine, paper } = profile;
+    let mut p = p;
+    if !fits(plot, paper, false) && fits(plot, paper, true) {
+        p = dvec2(p.y, plot.width_mm - p.x);
+    }
+    if paper.turned {
+        p = dvec2(paper.size[0] - p.x, paper.size[1] - p.y);
+    }
+    dvec2(p.x - paper.origin[0], paper.origin[1] - p.y) / machine.unit
+}
+
+fn write_stroke(piece: &[DVec2], out: &mut dyn io::Write) -> io::Result<()> {
+    let mut points: Vec<[i64; 2]> =
+        piece.iter().map(|p| [p.x.round() as i64, p.y.round() as i64]).collect();
+    points.dedup();
+    let Some((&[x, y], rest)) = points.split_first() else { return Ok(()) };
+    write!(out, "\nPA;PU{x},{y};")?;
+    if rest.is_empty() {
+        return write!(out, "PD;PU;");
+    }
+    write!(out, "PR;")?;
+    let mut last = [x, y];
+    for run in rest.chunks(MAX_POINTS) {
+        for (i, &point) in run.iter().enumerate() {
+            let lead = if i == 0 { "PD" } else { "," };
+            write!(out, "{lead}{},{}", point[0] - last[0], point[1] - last[1])?;
+            last = point;
+        }
+        write!(out, ";")?;
+    }
+    write!(out, "PU;")
+}
