@@ -22,6 +22,7 @@
 //! Angles are in radians unless a name ends in `_deg`.
 
 pub mod read;
+pub mod formula;
 
 pub mod mesh;
 

@@ -11,3 +11,4 @@ mod scenes;
 mod truth;
 mod views;
 mod writers;
+mod formula;
