@@ -27,6 +27,7 @@ pub mod formula;
 pub mod mesh;
 
 pub mod arrange;
+pub mod surface;
 
 pub mod topology;
 
@@ -59,3 +60,4 @@ pub mod page;
 pub mod writers;
 
 pub mod stats;
+pub mod engines;

@@ -5,3 +5,6 @@
 //! | [`edge`] | a viewed scene | spans of quantitative invisibility along its edges |
 
 pub mod edge;
+//! The engines: what is visible, each method in a file of its own.
+
+pub mod surface;

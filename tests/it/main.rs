@@ -12,3 +12,4 @@ mod truth;
 mod views;
 mod writers;
 mod formula;
+mod surface;

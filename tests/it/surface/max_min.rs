@@ -1,0 +1,146 @@
+//! Max-Min patches against brute force in integers.
+
+use glam::{DVec3, dvec3};
+use hiddenline::engines::surface::{GridPieces, Order, SurfaceError, max_min};
+use hiddenline::surface::Grid;
+use hiddenline::view::{Camera, Projection};
+
+use super::brute;
+
+const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 40.0, near: 1e-6 };
+
+/// A small generator of whole numbers (Knuth's MMIX constants), so that failures repeat.
+pub struct Dice(pub u64);
+
+impl Dice {
+    pub fn roll(&mut self, sides: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 33) % sides
+    }
+}
+
+pub fn camera(eye: DVec3, target: DVec3, projection: Projection) -> Camera {
+    let forward = target - eye;
+    let up = if forward.x == 0.0 && forward.y == 0.0 { DVec3::Y } else { DVec3::Z };
+    Camera::new(eye, target, up, projection).expect("a camera")
+}
+
+pub fn intervals(pieces: &GridPieces) -> Vec<Vec<(f64, f64)>> {
+    let mut edges = vec![Vec::new(); pieces.n_edges()];
+    for piece in pieces.iter() {
+        assert!(piece.t0 < piece.t1, "no zero-length piece: {piece:?}");
+        let edge: &mut Vec<(f64, f64)> = &mut edges[piece.edge as usize];
+        if let Some(last) = edge.last() {
+            assert!(last.1 <= piece.t0, "pieces are disjoint: {last:?} {piece:?}");
+        }
+        edge.push((piece.t0, piece.t1));
+    }
+    edges
+}
+
+/// Rough surfaces of several kinds, with whole heights.
+fn rough(dice: &mut Dice, kind: u64, nx: usize, ny: usize) -> Grid {
+    let heights = (0..nx * ny)
+        .map(|_| match kind {
+            0 => dice.roll(16) as f64 - 8.0,
+            1 => if dice.roll(6) == 0 { dice.roll(60) as f64 } else { 0.0 },
+            2 => dice.roll(2) as f64 * 4.0,
+            3 => dice.roll(3) as f64,
+            _ => (dice.roll(1024) as f64 - 512.0) / 64.0,
+        })
+        .collect();
+    let uneven = kind == 4;
+    let mut lines = |n: usize| -> Vec<f64> {
+        let mut at = 0.0;
+        (0..n)
+            .map(|_| {
+                let here = at;
+                at += if uneven { 1.0 + dice.roll(3) as f64 } else { 2.0 };
+                here
+            })
+            .collect()
+    };
+    let (xs, ys) = (lines(nx), lines(ny));
+    Grid::new(xs, ys, heights).expect("a grid")
+}
+
+fn check(grid: &Grid, camera: &Camera, name: &str) -> bool {
+    let scale = 64.0;
+    let place = |p: DVec3, w: i128| {
+        let p = p * scale;
+        assert_eq!(p, p.round());
+        [p.x as i128, p.y as i128, p.z as i128, w]
+    };
+    let eye = match camera.projection() {
+        Projection::Perspective { .. } => place(camera.eye(), 1),
+        Projection::Orthographic => place(-camera.forward(), 0),
+    };
+    let by_rows = match max_min::solve(grid, camera, Order::Rows) {
+        Ok(pieces) => pieces,
+        Err(SurfaceError::EyeOnSurface) => return false,
+        Err(error) => panic!("{name}: {error}"),
+    };
+    let by_diagonals = max_min::solve(grid, camera, Order::Diagonals).expect("as by rows");
+    let truth = brute::grid_lines(grid, eye, scale);
+    for (order, pieces) in [("rows", &by_rows), ("diagonals", &by_diagonals)] {
+        for (edge, (got, expected)) in intervals(pieces).iter().zip(&truth).enumerate() {
+            if expected.first().is_some_and(|range| range.0.is_nan()) {
+                continue;
+            }
+            let difference = brute::difference(got, expected);
+            assert!(
+                difference < 1e-9,
+                "{name}, {order}: edge {edge} {:?} of {grid:?}\nfrom {camera:?}\nis visible at {expected:?}, not {got:?}",
+                pieces.ends(edge as u32).map(|k| grid.point(k))
+            );
+        }
+    }
+    true
+}
+
+/// An eye left of, in, or right of a range; half of those inside stand on a grid line.
+fn coordinate(dice: &mut Dice, region: u64, lines: &[f64]) -> f64 {
+    let (low, high) = (lines[0], lines[lines.len() - 1]);
+    let part = |dice: &mut Dice| (1 + dice.roll(24)) as f64 / 4.0;
+    match region {
+        0 => low - part(dice),
+        1 if dice.roll(2) == 0 => lines[dice.roll(lines.len() as u64) as usize],
+        1 => low + (dice.roll(1 + ((high - low) * 4.0) as u64)) as f64 / 4.0,
+        _ => high + part(dice),
+    }
+}
+
+#[test]
+fn rough_surfaces_equal_brute_force_in_perspective_from_all_nine_regions() {
+    let mut dice = Dice(7);
+    let mut checked = 0;
+    for round in 0..540 {
+        let (kind, region) = (round % 5, round / 5 % 9);
+        let (nx, ny) = (2 + dice.roll(4) as usize, 2 + dice.roll(4) as usize);
+        let grid = rough(&mut dice, kind, nx, ny);
+        let z = (dice.roll(160) as f64 - 80.0) / 4.0;
+        let eye = dvec3(
+            coordinate(&mut dice, region % 3, grid.xs()),
+            coordinate(&mut dice, region / 3, grid.ys()),
+            z,
+        );
+        let target = eye + dvec3(1.0 - dice.roll(3) as f64, 2.0 - dice.roll(3) as f64, -0.5);
+        checked += u64::from(check(&grid, &camera(eye, target, PERSPECTIVE), &format!("round {round}")));
+    }
+    assert!(checked > 450, "only {checked} scenes had the eye off the surface");
+}
+
+#[test]
+fn rough_surfaces_equal_brute_force_in_orthographic_views() {
+    let mut dice = Dice(11);
+    for round in 0..270 {
+        let (nx, ny) = (2 + dice.roll(4) as usize, 2 + dice.roll(4) as usize);
+        let grid = rough(&mut dice, round % 5, nx, ny);
+        let component = |dice: &mut Dice| (dice.roll(9) as f64 - 4.0) / 2.0;
+        let forward = dvec3(component(&mut dice), component(&mut dice), component(&mut dice));
+        if forward == DVec3::ZERO {
+            continue;
+        }
+        check(&grid, &camera(DVec3::ZERO, forward, Projection::Orthographic), &format!("round {round}"));
+    }
+}
