@@ -59,6 +59,20 @@ const MAX_STRIPS: usize = 16;
 /// # Errors
 /// Holes, or an eye on the surface.
 pub fn solve(grid: &Grid, camera: &Camera, order: Order) -> Result<GridPieces, SurfaceError> {
+    solve_in_strips(grid, camera, order, CELLS_PER_STRIP)
+}
+
+/// As [`solve`], with strips of about `cells_per_strip` cells; the drawing is the same up to the
+/// rounding of where pieces end.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_in_strips(
+    grid: &Grid,
+    camera: &Camera,
+    order: Order,
+    cells_per_strip: usize,
+) -> Result<GridPieces, SurfaceError> {
     if grid.holes() != Holes::None {
         return Err(SurfaceError::Holes);
     }
@@ -82,7 +96,7 @@ pub fn solve(grid: &Grid, camera: &Camera, order: Order) -> Result<GridPieces, S
         .iter()
         .flat_map(|part| {
             let sight = Sight::new(camera, part.sx, part.sy, centre);
-            strips(grid, part, &sight, size).into_iter().map(move |range| (part, sight, range))
+            strips(grid, part, &sight, size, cells_per_strip).into_iter().map(move |range| (part, sight, range))
         })
         .collect();
     let done: Vec<_> = tasks
@@ -202,7 +216,13 @@ fn sides(values: &[f64], eye: f64) -> Vec<(f64, (Vec<u32>, First))> {
 }
 
 /// Ranges of u of about equal work that make up a part.
-fn strips(grid: &Grid, part: &Part, sight: &Sight, size: DVec3) -> Vec<(f64, f64)> {
+fn strips(
+    grid: &Grid,
+    part: &Part,
+    sight: &Sight,
+    size: DVec3,
+    cells_per_strip: usize,
+) -> Vec<(f64, f64)> {
     let (low, high) = match sight.forward {
         None => (-1.0, 1.0),
         Some(f) => {
@@ -211,7 +231,7 @@ fn strips(grid: &Grid, part: &Part, sight: &Sight, size: DVec3) -> Vec<(f64, f64
         }
     };
     let cells = part.columns.len() * part.rows.len();
-    let n_strips = (cells / CELLS_PER_STRIP).clamp(1, MAX_STRIPS);
+    let n_strips = (cells / cells_per_strip.max(1)).clamp(1, MAX_STRIPS);
     let every = |n: usize| (n / 64).max(1);
     let mut us: Vec<f64> = Vec::new();
     for &row in part.rows.iter().skip(1).step_by(every(part.rows.len())) {

@@ -6,12 +6,14 @@
 
 mod cells;
 mod horizon;
+mod lines;
 pub mod max_min;
 mod pieces;
 mod plan_predicates;
 mod strip;
 
 pub use horizon::Work;
+pub use lines::{Lines, strokes};
 pub use pieces::{GridPieces, Piece, Side};
 
 use thiserror::Error;

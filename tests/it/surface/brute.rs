@@ -7,7 +7,7 @@ use hiddenline::surface::Grid;
 type Int = i128;
 
 /// A point, or a direction when the last is 0.
-pub type Point = [Int; 4];
+pub(super) type Point = [Int; 4];
 
 fn det3(a: [Int; 3], b: [Int; 3], c: [Int; 3]) -> Int {
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
@@ -117,7 +117,7 @@ fn visible(eye: Point, p: Point, q: Point, triangles: &[[Point; 3]]) -> Vec<(f64
 
 /// Visible intervals of each grid edge, in the order of the engine's edges. Coordinates times
 /// `scale` must be small integers; an orthographic eye has 0 in its last place.
-pub fn grid_lines(grid: &Grid, eye: Point, scale: f64) -> Vec<Vec<(f64, f64)>> {
+pub(super) fn grid_lines(grid: &Grid, eye: Point, scale: f64) -> Vec<Vec<(f64, f64)>> {
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let point = |i: usize, j: usize| -> Point {
         let p = grid.point((j * nx + i) as u32) * scale;
@@ -148,7 +148,7 @@ pub fn grid_lines(grid: &Grid, eye: Point, scale: f64) -> Vec<Vec<(f64, f64)>> {
 }
 
 /// Length of the parts of 0..1 that are in one list of disjoint intervals but not in the other.
-pub fn difference(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
+pub(super) fn difference(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     let length = |list: &[(f64, f64)]| list.iter().map(|(from, to)| to - from).sum::<f64>();
     let common: f64 = a
         .iter()
