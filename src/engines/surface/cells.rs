@@ -11,7 +11,7 @@
 use std::cmp::Ordering;
 
 use super::Order;
-use super::horizon::{Plane, Samples, Vertex};
+use super::horizon::{Samples, Vertex};
 use super::strip::Strip;
 use crate::surface::Grid;
 
@@ -83,6 +83,19 @@ impl Part {
     }
 }
 
+/// The first column of a range from which on `holds` is true, or the end of the range.
+fn first_column(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
+}
+
 struct Walk<'a, 'b, 'c> {
     part: &'a Part,
     grid: &'a Grid,
@@ -104,32 +117,31 @@ impl Walk<'_, '_, '_> {
 
     fn rows(&mut self) {
         let (n_columns, n_rows) = self.part.cells();
-        let row_of = |walk: &Self, r: usize| -> Vec<Vertex> {
-            (0..=n_columns).map(|c| walk.strip.plane.vertex(walk.id(c, r))).collect()
-        };
-        let mut near = row_of(self, 0);
+        let (mut near, mut far) = (Vec::new(), Vec::new());
+        let first = usize::from(self.part.first_column == First::Behind);
+        // Rounded u can only make the range a little too wide; segments are cut exactly.
+        let margin = 4.0 * self.strip.plane.du;
+        let (from, to) = (self.strip.from - margin, self.strip.to + margin);
         for r in 0..n_rows {
-            let far = row_of(self, r + 1);
-            let cut_row = r == 0 && self.part.first_row == First::Behind;
-            let first = usize::from(self.part.first_column == First::Behind);
             if first == 1 {
                 self.cut_cell(0, r);
             }
-            if cut_row {
+            if r == 0 && self.part.first_row == First::Behind {
                 (first..n_columns).for_each(|c| self.cut_cell(c, r));
-            } else {
-                // Rounded u can only make this range a little too wide; segments are cut exactly.
-                let margin = 4.0 * self.strip.plane.du;
-                let (from, to) = (self.strip.from - margin, self.strip.to + margin);
-                let begin = first + near[first + 1..].partition_point(|v| v.u < from);
-                let end = first + far[first..n_columns].partition_point(|v| v.u <= to);
-                for c in begin..end.max(begin) {
-                    let corners =
-                        Corners { near: near[c], right: near[c + 1], left: far[c], far: far[c + 1] };
-                    self.cell(c, r, &corners);
-                }
+                continue;
             }
-            near = far;
+            let vertex = |c: usize, r: usize| self.strip.plane.vertex(self.id(c, r));
+            let begin = first_column(first, n_columns, |c| vertex(c + 1, r).u >= from);
+            let end = first_column(begin, n_columns, |c| vertex(c, r + 1).u > to);
+            near.clear();
+            far.clear();
+            near.extend((begin..=end).map(|c| vertex(c, r)));
+            far.extend((begin..=end).map(|c| vertex(c, r + 1)));
+            for (k, c) in (begin..end).enumerate() {
+                let corners =
+                    Corners { near: near[k], right: near[k + 1], left: far[k], far: far[k + 1] };
+                self.cell(c, r, &corners);
+            }
         }
     }
 

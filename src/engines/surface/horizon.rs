@@ -333,6 +333,9 @@ impl Horizon {
         mut report: impl FnMut(Stop, Stop),
     ) {
         let starts_at_break = self.seek(plane, s);
+        if self.is_inside(plane, s) {
+            return;
+        }
         let Some(mut piece) = self.right.pop() else { return };
         // Whether the last piece on the left stack is the segment.
         let mut on_segment = false;
@@ -434,6 +437,44 @@ impl Horizon {
         {
             self.right.push(last);
         }
+    }
+
+    /// Whether the segment certainly lies strictly within the horizon, as most do: then it changes
+    /// nothing and nothing of it is seen. Rounded numbers only; what they leave open is false. The
+    /// finger is where `seek` puts it.
+    #[inline]
+    fn is_inside<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment) -> bool {
+        if s.left == End::Border || s.right == End::Border {
+            return false;
+        }
+        let up = self.up;
+        let inside = |difference: f64, error: f64| difference * up < -2.0 * error;
+        let Some((mut piece, rest)) = self.right.split_last() else { return false };
+        if !inside(s.line.va - piece.line.at(s.line.ua), piece.line.error + plane.v_error(s.line.va)) {
+            return false;
+        }
+        for next in rest.iter().rev() {
+            if piece.line.is_empty() {
+                return false;
+            }
+            self.work.comparisons += 1;
+            let beyond = next.from.u - s.ub;
+            let margin = 2.0 * (next.from.error + plane.du);
+            if beyond > margin {
+                break;
+            }
+            let at = s.line.at(next.from.u);
+            let sway = |line: &Line| (s.line.slope - line.slope).abs() * 2.0 * next.from.error;
+            let below = |line: &Line| {
+                inside(at - line.at(next.from.u), s.line.error + line.error + sway(line))
+            };
+            if beyond >= -margin || !below(&piece.line) || !below(&next.line) {
+                return false;
+            }
+            piece = next;
+        }
+        !piece.line.is_empty()
+            && inside(s.line.vb - piece.line.at(s.ub), piece.line.error + plane.v_error(s.line.vb))
     }
 
     /// Moves the finger so that the next piece on the right holds the segment's left end; returns

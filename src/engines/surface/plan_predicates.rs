@@ -74,7 +74,7 @@ impl Sight {
 
     /// Where the u of `p` lies compared with the u of `q`.
     pub(super) fn order(&self, p: DVec3, q: DVec3) -> Ordering {
-        if let Some(sign) = self.order_by_products(p, q) {
+        if let Some(sign) = self.order_by_products(p, q).or_else(|| self.order_by_expansions(p, q)) {
             return sign;
         }
         let [p, q] = self.exact([p, q]);
@@ -105,6 +105,30 @@ impl Sight {
             (left, right) if left != right => Some(left),
             _ => None,
         }
+    }
+
+    /// The order by an adaptive determinant, which is exact within its window of exponents.
+    fn order_by_expansions(&self, p: DVec3, q: DVec3) -> Option<Ordering> {
+        let coord = |x, y| robust::Coord { x, y };
+        let plan = |p: DVec3| coord(p.x, p.y);
+        let det = match self.forward {
+            None => {
+                let [p, q, c] = [p, q, self.centre].map(plan);
+                if ![p, q, c].iter().all(|p| in_window(p.x) && in_window(p.y)) {
+                    return None;
+                }
+                robust::orient2d(p, q, c) * self.sx * self.sy
+            }
+            Some(f) => {
+                let dx = exact_difference(p.x, q.x)? * self.sx;
+                let dy = exact_difference(p.y, q.y)? * self.sy;
+                if ![dx, dy, f.x, f.y].into_iter().all(in_window) {
+                    return None;
+                }
+                robust::orient2d(coord(f.y, f.x), coord(dy, dx), coord(0.0, 0.0))
+            }
+        };
+        det.partial_cmp(&0.0)
     }
 
     /// Where the u of `p` lies compared with `u`.
@@ -233,6 +257,21 @@ pub(super) fn over_plane(p: DVec3, a: DVec3, b: DVec3, c: DVec3) -> Ordering {
         [difference(0), difference(1), difference(2)]
     };
     sign(&dot(&cross(&minus(b), &minus(c)), &minus(p)))
+}
+
+/// Sizes between which products of two numbers and their rounding errors are normal numbers.
+const WINDOW: std::ops::Range<f64> = 1e-60..1e60;
+
+fn in_window(value: f64) -> bool {
+    value == 0.0 || WINDOW.contains(&value.abs())
+}
+
+/// `a − b`, if it is a number (Knuth's test for the rounding error of a difference).
+fn exact_difference(a: f64, b: f64) -> Option<f64> {
+    let difference = a - b;
+    let b_part = a - difference;
+    let error = (a - (difference + b_part)) + (b_part - b);
+    (error == 0.0).then_some(difference)
 }
 
 type Triple = [IBig; 3];

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::Work;
 use super::horizon::{End, Horizon, Plane, Samples, Segment, Stop, Vertex};
-use super::pieces::{LOWER, Piece, Side, UPPER};
+use super::pieces::{HIDDEN, LOWER, Piece, Side, UPPER};
 
 /// A strip of one part of the domain, from one u to another. Strips never hide each other.
 pub(super) struct Strip<'a, S: Samples> {
@@ -170,6 +170,13 @@ impl<'a, S: Samples> Strip<'a, S> {
                 continue;
             };
             let from = t_foot.map_or(from, |t| from.max(t));
+            if (from, to) == (0.0, 1.0) {
+                // The cells on both sides may be in different strips, so the order must not matter.
+                let seen = if side == Side::Upper { UPPER } else { LOWER };
+                let merge = |old| Some(if old == HIDDEN { seen } else { seen.min(old) });
+                let _ = self.status[edge as usize].fetch_update(Relaxed, Relaxed, merge);
+                continue;
+            }
             let (t0, t1) = if near < far { (from, to) } else { (1.0 - to, 1.0 - from) };
             if t0 < t1 {
                 self.found.push(Piece { edge, t0, t1, side });
