@@ -46,7 +46,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for stroke in drawing.iter() {
             for (k, p) in stroke.points.iter().enumerate() {
                 let letter = if k == 0 { 'M' } else { 'L' };
-                write!(svg, "{letter}{:.3} {:.3}", 10.0 + (p.x - low.x) * scale, 10.0 + (high.y - p.y) * scale)?;
+                write!(
+                    svg,
+                    "{letter}{:.3} {:.3}",
+                    10.0 + (p.x - low.x) * scale,
+                    10.0 + (high.y - p.y) * scale
+                )?;
             }
         }
         let size = (high - low) * scale + 20.0;

@@ -22,12 +22,14 @@
 //! Angles are in radians unless a name ends in `_deg`.
 
 pub mod read;
+
 pub mod formula;
+
+pub mod surface;
 
 pub mod mesh;
 
 pub mod arrange;
-pub mod surface;
 
 pub mod topology;
 
@@ -60,4 +62,3 @@ pub mod page;
 pub mod writers;
 
 pub mod stats;
-pub mod engines;

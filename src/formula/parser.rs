@@ -92,7 +92,9 @@ impl<'a> Parser<'a> {
                 self.tape.push(Op::Select);
                 continue;
             }
-            let Some((binding, op)) = binary(symbol).filter(|(b, _)| *b >= tightness) else { break };
+            let Some((binding, op)) = binary(symbol).filter(|(b, _)| *b >= tightness) else {
+                break;
+            };
             self.next();
             // `^` binds to the right, and a sign may follow it: `2^-x`.
             self.expression(if binding == POWER { UNARY } else { binding + 1 })?;

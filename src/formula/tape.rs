@@ -215,7 +215,12 @@ fn binary(stack: &mut [[f64; BLOCK]], top: &mut usize, n: usize, f: impl Fn(f64,
     target[..n].iter_mut().zip(&above[0][..n]).for_each(|(s, t)| *s = f(*s, *t));
 }
 
-fn ternary(stack: &mut [[f64; BLOCK]], top: &mut usize, n: usize, f: impl Fn(f64, f64, f64) -> f64) {
+fn ternary(
+    stack: &mut [[f64; BLOCK]],
+    top: &mut usize,
+    n: usize,
+    f: impl Fn(f64, f64, f64) -> f64,
+) {
     *top -= 2;
     let (below, above) = stack.split_at_mut(*top);
     let target = &mut below[*top - 1];

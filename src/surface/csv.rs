@@ -58,15 +58,17 @@ pub fn read_csv(text: &str, placement: Placement) -> Result<Grid, CsvError> {
         let numbered = text.lines().enumerate().map(|(k, line)| (k + 1, line));
         numbered.filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'))
     };
-    let Some((_, first)) = lines().next() else { return Err(CsvError::Empty) };
+    let Some((_, first)) = lines().next() else {
+        return Err(CsvError::Empty);
+    };
     let separator = [';', '\t', ','].into_iter().find(|&c| first.contains(c));
     let has_coordinates =
         separator.is_some_and(|c| first.split(c).next().is_some_and(|cell| cell.trim().is_empty()));
     // One separator at the end of every row is a habit of some writers, not a hole.
     let first_width = cells(first, separator).count();
-    let trailing = separator.is_some_and(|c| {
-        lines().all(|(_, line)| line.trim_end_matches([' ', '\r']).ends_with(c))
-    }) && first_width > 1;
+    let trailing = separator
+        .is_some_and(|c| lines().all(|(_, line)| line.trim_end_matches([' ', '\r']).ends_with(c)))
+        && first_width > 1;
     let width = first_width - usize::from(trailing);
 
     let mut values = Vec::new();
@@ -101,11 +103,12 @@ pub fn read_csv(text: &str, placement: Placement) -> Result<Grid, CsvError> {
         values = rows.concat();
         ys = ys.map(|ys| ys.into_iter().rev().collect());
     }
-    let place = |axis: char, range: Option<(f64, f64)>, given: Option<Vec<f64>>, n: usize| match range {
-        Some((from, to)) if !(from < to) => Err(GridError::Range { axis, from, to }),
-        Some((from, to)) => Ok(evenly(from, to, n)),
-        None => Ok(given.unwrap_or_else(|| evenly(0.0, n.saturating_sub(1) as f64, n))),
-    };
+    let place =
+        |axis: char, range: Option<(f64, f64)>, given: Option<Vec<f64>>, n: usize| match range {
+            Some((from, to)) if !(from < to) => Err(GridError::Range { axis, from, to }),
+            Some((from, to)) => Ok(evenly(from, to, n)),
+            None => Ok(given.unwrap_or_else(|| evenly(0.0, n.saturating_sub(1) as f64, n))),
+        };
     Ok(Grid::new(place('x', placement.x, xs, nx)?, place('y', placement.y, ys, ny)?, values)?)
 }
 

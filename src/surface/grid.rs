@@ -57,7 +57,9 @@ pub enum GridError {
         y: usize,
     },
     /// A range that is reversed, empty or not finite.
-    #[error("the range of {axis} must go from a smaller to a larger number, not from {from} to {to}")]
+    #[error(
+        "the range of {axis} must go from a smaller to a larger number, not from {from} to {to}"
+    )]
     Range {
         /// `x` or `y`.
         axis: char,
@@ -104,7 +106,10 @@ impl Grid {
         check_size(xs.len(), ys.len())?;
         for (axis, values) in [('x', &xs), ('y', &ys)] {
             let wrong = |k: usize| {
-                !values[k].is_finite() || k > 0 && values[k].partial_cmp(&values[k - 1]) != Some(std::cmp::Ordering::Greater)
+                !values[k].is_finite()
+                    || k > 0
+                        && values[k].partial_cmp(&values[k - 1])
+                            != Some(std::cmp::Ordering::Greater)
             };
             if let Some(index) = (0..values.len()).find(|&k| wrong(k)) {
                 return Err(GridError::NotIncreasing { axis, index, value: values[index] });

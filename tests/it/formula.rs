@@ -87,7 +87,10 @@ fn errors_name_the_column() {
         ("1 + sin(x, y)", "column 5: `sin` takes 1 argument, not 2"),
         ("min(x)", "column 1: `min` takes 2 or more arguments, not 1"),
         ("0 < x < 1", "column 7: comparisons do not chain: write `a < b && b < c`"),
-        ("x ? 1", "column 6: expected `:` and the value otherwise but found the end of the formula"),
+        (
+            "x ? 1",
+            "column 6: expected `:` and the value otherwise but found the end of the formula",
+        ),
         ("u + 1", "column 1: unknown name `u`"),
     ] {
         assert_eq!(message(text), expected, "{text}");

@@ -56,18 +56,23 @@ pub(super) enum First {
 }
 
 impl Part {
+    /// The sample at a column and row counted from the eye.
+    pub(super) fn sample(&self, grid: &Grid, c: usize, r: usize) -> u32 {
+        self.rows[r] * grid.xs().len() as u32 + self.columns[c]
+    }
+
     fn cells(&self) -> (usize, usize) {
         (self.columns.len() - 1, self.rows.len() - 1)
     }
 
     /// The number of the edge along x from sample (c, r) away from the eye.
-    fn x_edge(&self, grid: &Grid, c: usize, r: usize) -> u32 {
+    pub(super) fn x_edge(&self, grid: &Grid, c: usize, r: usize) -> u32 {
         let i = self.columns[c].min(self.columns[c + 1]);
         self.rows[r] * (grid.xs().len() as u32 - 1) + i
     }
 
     /// The number of the edge along y from sample (c, r) away from the eye.
-    fn y_edge(&self, grid: &Grid, c: usize, r: usize) -> u32 {
+    pub(super) fn y_edge(&self, grid: &Grid, c: usize, r: usize) -> u32 {
         let (nx, ny) = (grid.xs().len() as u32, grid.ys().len() as u32);
         let j = self.rows[r].min(self.rows[r + 1]);
         ny * (nx - 1) + self.columns[c] * (ny - 1) + j
@@ -112,7 +117,7 @@ struct Corners {
 
 impl Walk<'_, '_, '_> {
     fn id(&self, c: usize, r: usize) -> u32 {
-        self.part.rows[r] * self.grid.xs().len() as u32 + self.part.columns[c]
+        self.part.sample(self.grid, c, r)
     }
 
     fn rows(&mut self) {
@@ -234,7 +239,8 @@ impl Walk<'_, '_, '_> {
         if part.radial_columns {
             test((near, left), part.y_edge(grid, c, r), true, c == 0);
             test((right, far), part.y_edge(grid, c + 1, r), false, c + 1 == cells.0);
-        } else if c == 0 && matches!(part.first_column, First::RadialOnBorder | First::RadialInside) {
+        } else if c == 0 && matches!(part.first_column, First::RadialOnBorder | First::RadialInside)
+        {
             let on_border = part.first_column == First::RadialOnBorder;
             test((near, left), part.y_edge(grid, c, r), true, on_border);
         }
@@ -260,7 +266,12 @@ impl Walk<'_, '_, '_> {
             match part.first_column {
                 First::RadialOnBorder => strip.draw_whole(edge),
                 First::RadialInside => {
-                    strip.draw_radial((near, left), edge, true, Some((centre.y - from) / (to - from)));
+                    strip.draw_radial(
+                        (near, left),
+                        edge,
+                        true,
+                        Some((centre.y - from) / (to - from)),
+                    );
                 }
                 _ => strip.draw_clipped(left, near, edge),
             }
@@ -271,13 +282,17 @@ impl Walk<'_, '_, '_> {
             match part.first_row {
                 First::RadialOnBorder => strip.draw_whole(edge),
                 First::RadialInside => {
-                    strip.draw_radial((near, right), edge, false, Some((centre.x - from) / (to - from)));
+                    strip.draw_radial(
+                        (near, right),
+                        edge,
+                        false,
+                        Some((centre.x - from) / (to - from)),
+                    );
                 }
                 _ => strip.draw_clipped(near, right, edge),
             }
         }
-        let diagonal =
-            if part.sx * part.sy > 0.0 { (near, far) } else { (left, right) };
+        let diagonal = if part.sx * part.sy > 0.0 { (near, far) } else { (left, right) };
         if let Some(diagonal) = strip.clipped(diagonal.0, diagonal.1) {
             strip.hide(&diagonal);
         }

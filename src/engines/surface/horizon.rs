@@ -61,7 +61,13 @@ impl<'a, S: Samples> Plane<'a, S> {
         match sight.forward {
             // dx, dy, dz are off by one rounding each, their sum and difference by two relative to
             // the sum, which is not less than the difference; the quotients add one.
-            None => Self { samples, sight, du: 6.0 * UNIT, dv_relative: 6.0 * UNIT, dv: f64::MIN_POSITIVE },
+            None => Self {
+                samples,
+                sight,
+                du: 6.0 * UNIT,
+                dv_relative: 6.0 * UNIT,
+                dv: f64::MIN_POSITIVE,
+            },
             Some(f) => {
                 let reach = f.x.abs() * size.y + f.y.abs() * size.x;
                 let plan = f.x * f.x + f.y * f.y;
@@ -76,6 +82,11 @@ impl<'a, S: Samples> Plane<'a, S> {
                 }
             }
         }
+    }
+
+    /// A number that |u| of no sample exceeds; 0 to within rounding only when all are 0.
+    pub(super) fn reach(&self) -> f64 {
+        self.du / UNIT
     }
 
     pub(super) fn vertex(&self, id: u32) -> Vertex {
@@ -179,7 +190,8 @@ impl Segment {
     ) -> Self {
         let width = b.u - a.u;
         let v_error = plane.v_error(a.v) + plane.v_error(b.v);
-        let line = Line { a: a.id, b: b.id, ua: a.u, va: a.v, vb: b.v, slope: 0.0, error: f64::INFINITY };
+        let line =
+            Line { a: a.id, b: b.id, ua: a.u, va: a.v, vb: b.v, slope: 0.0, error: f64::INFINITY };
         let mut segment = Self { line, ub: b.u, left, right };
         segment.set_slope(width, v_error, plane.du);
         segment
@@ -214,7 +226,10 @@ impl Segment {
         let size = da.abs().max(db.abs());
         let end = |id: u32, d: DVec3, other: DVec3, u: f64, out: bool| {
             if !out {
-                return (Vertex { id, u: (d.x - d.y) / (d.x + d.y), v: d.z / (d.x + d.y) }, plane.v_error(d.z / (d.x + d.y)));
+                return (
+                    Vertex { id, u: (d.x - d.y) / (d.x + d.y), v: d.z / (d.x + d.y) },
+                    plane.v_error(d.z / (d.x + d.y)),
+                );
             }
             // The border u = −1 is dx = 0, and u = 1 is dy = 0.
             let (from, to) = if u < 0.0 { (d.x, other.x) } else { (d.y, other.y) };
@@ -229,7 +244,8 @@ impl Segment {
         };
         let (a_at, a_error) = end(a, da, db, -1.0, left == End::Border);
         let (b_at, b_error) = end(b, db, da, 1.0, right == End::Border);
-        let line = Line { a, b, ua: a_at.u, va: a_at.v, vb: b_at.v, slope: 0.0, error: f64::INFINITY };
+        let line =
+            Line { a, b, ua: a_at.u, va: a_at.v, vb: b_at.v, slope: 0.0, error: f64::INFINITY };
         let mut segment = Self { line, ub: b_at.u, left, right };
         if a_error + b_error < f64::INFINITY {
             segment.set_slope(b_at.u - a_at.u, a_error + b_error, plane.du);
@@ -336,7 +352,9 @@ impl Horizon {
         if self.is_inside(plane, s) {
             return;
         }
-        let Some(mut piece) = self.right.pop() else { return };
+        let Some(mut piece) = self.right.pop() else {
+            return;
+        };
         // Whether the last piece on the left stack is the segment.
         let mut on_segment = false;
         let mut at_start = true;
@@ -358,7 +376,9 @@ impl Horizon {
                 (Ordering::Greater, Ordering::Greater)
             } else {
                 self.work.comparisons += 1;
-                let from = if at_start { self.left_end(plane, s, &piece.line) } else {
+                let from = if at_start {
+                    self.left_end(plane, s, &piece.line)
+                } else {
                     self.at_break(plane, s, &piece.line, piece.from)
                 };
                 let to = match next {
@@ -367,8 +387,10 @@ impl Horizon {
                 };
                 (from, to)
             };
-            let start = if at_start { left_stop(s, piece.from.u) } else { Stop::Inside(piece.from.u) };
-            let start_break = if at_start { self.left_break(s, &piece, plane.du) } else { piece.from };
+            let start =
+                if at_start { left_stop(s, piece.from.u) } else { Stop::Inside(piece.from.u) };
+            let start_break =
+                if at_start { self.left_break(s, &piece, plane.du) } else { piece.from };
             // The piece itself is on the left stack when the segment starts inside it.
             let piece_is_down = at_start && !starts_at_break;
             match (from, to) {
@@ -414,8 +436,7 @@ impl Horizon {
             }
             if at_end {
                 if on_segment && s.right == End::Vertex {
-                    let from =
-                        Break { u: s.ub, error: plane.du, kind: Kind::Vertex(s.line.b) };
+                    let from = Break { u: s.ub, error: plane.du, kind: Kind::Vertex(s.line.b) };
                     match (ends, self.right.last_mut()) {
                         (Ordering::Equal, Some(next)) => next.from = from,
                         _ => self.right.push(Piece { line: piece.line, from }),
@@ -430,7 +451,10 @@ impl Horizon {
             }
         }
         if let Some(begin) = run {
-            report(begin, if s.right == End::Vertex { Stop::Right } else { Stop::Border(self.border) });
+            report(
+                begin,
+                if s.right == End::Vertex { Stop::Right } else { Stop::Border(self.border) },
+            );
         }
         if self.right.is_empty()
             && let Some(last) = self.left.pop()
@@ -449,8 +473,13 @@ impl Horizon {
         }
         let up = self.up;
         let inside = |difference: f64, error: f64| difference * up < -2.0 * error;
-        let Some((mut piece, rest)) = self.right.split_last() else { return false };
-        if !inside(s.line.va - piece.line.at(s.line.ua), piece.line.error + plane.v_error(s.line.va)) {
+        let Some((mut piece, rest)) = self.right.split_last() else {
+            return false;
+        };
+        if !inside(
+            s.line.va - piece.line.at(s.line.ua),
+            piece.line.error + plane.v_error(s.line.va),
+        ) {
             return false;
         }
         for next in rest.iter().rev() {
@@ -598,7 +627,13 @@ impl Horizon {
         self.upward(plane.sight.point_over_line(p, a, b))
     }
 
-    fn at_border<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment, line: &Line, u: f64) -> Ordering {
+    fn at_border<S: Samples>(
+        &mut self,
+        plane: &Plane<S>,
+        s: &Segment,
+        line: &Line,
+        u: f64,
+    ) -> Ordering {
         let difference = (s.line.at(u) - line.at(u)) * self.up;
         if let Some(order) = filtered(difference, s.line.error + line.error) {
             return order;
@@ -606,7 +641,13 @@ impl Horizon {
         self.lines_at(plane, s, line, Place::Border(u))
     }
 
-    fn lines_at<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment, line: &Line, at: Place) -> Ordering {
+    fn lines_at<S: Samples>(
+        &mut self,
+        plane: &Plane<S>,
+        s: &Segment,
+        line: &Line,
+        at: Place,
+    ) -> Ordering {
         if (s.line.a, s.line.b) == (line.a, line.b) {
             return Ordering::Equal;
         }
@@ -631,7 +672,13 @@ impl Horizon {
 
     /// Whether the segment is beyond a line at a break inside both.
     #[inline]
-    fn at_break<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment, line: &Line, b: Break) -> Ordering {
+    fn at_break<S: Samples>(
+        &mut self,
+        plane: &Plane<S>,
+        s: &Segment,
+        line: &Line,
+        b: Break,
+    ) -> Ordering {
         let difference = (s.line.at(b.u) - line.at(b.u)) * self.up;
         let error = s.line.error
             + line.error
@@ -710,7 +757,10 @@ impl Horizon {
         let slope_error = 2.0 * lines_error / width.max(0.0);
         let steep = slope.abs() - slope_error;
         let mut error = if steep > 0.5 * slope.abs() {
-            2.0 * lines_error / steep + 4.0 * UNIT * (low.abs() + high.abs()) + low_error + high_error
+            2.0 * lines_error / steep
+                + 4.0 * UNIT * (low.abs() + high.abs())
+                + low_error
+                + high_error
         } else {
             f64::INFINITY
         };

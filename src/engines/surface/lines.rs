@@ -42,7 +42,12 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines)
     let chosen = |n: usize| (0..n).filter(move |k| k % every == 0 || k + 1 == n);
     let mut wanted: Vec<Line> = Vec::new();
     if lines.along_x {
-        wanted.extend(chosen(ny).map(|j| Line { first: j * nx, step: 1, edge: j * (nx - 1), n: nx }));
+        wanted.extend(chosen(ny).map(|j| Line {
+            first: j * nx,
+            step: 1,
+            edge: j * (nx - 1),
+            n: nx,
+        }));
     }
     if lines.along_y {
         let along_x = ny * (nx - 1);
@@ -100,7 +105,9 @@ impl Projector {
 
     /// Cuts a range of the segment from `p` to `q` to what lies beyond the near plane.
     fn kept(&self, p: DVec3, q: DVec3, (t0, t1): (f64, f64)) -> Option<(f64, f64)> {
-        let Some(near) = self.near else { return Some((t0, t1)) };
+        let Some(near) = self.near else {
+            return Some((t0, t1));
+        };
         let beyond = |p: DVec3| (p - self.eye).dot(self.frame.forward) - near;
         let (a, b) = (beyond(p), beyond(q));
         let range = match (a >= 0.0, b >= 0.0) {
@@ -176,7 +183,9 @@ impl Line {
                 if !wanted(piece.side) {
                     return;
                 }
-                let Some((t0, t1)) = projector.kept(p, q, (piece.t0, piece.t1)) else { return };
+                let Some((t0, t1)) = projector.kept(p, q, (piece.t0, piece.t1)) else {
+                    return;
+                };
                 let at = |t: f64| match t {
                     0.0 => projector.image(p),
                     1.0 => projector.image(q),

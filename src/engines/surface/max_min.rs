@@ -96,7 +96,9 @@ pub fn solve_in_strips(
         .iter()
         .flat_map(|part| {
             let sight = Sight::new(camera, part.sx, part.sy, centre);
-            strips(grid, part, &sight, size, cells_per_strip).into_iter().map(move |range| (part, sight, range))
+            strips(grid, part, &sight, size, cells_per_strip)
+                .into_iter()
+                .map(move |range| (part, sight, range))
         })
         .collect();
     let done: Vec<_> = tasks
@@ -122,7 +124,7 @@ pub fn solve_in_strips(
     Ok(pieces)
 }
 
-fn bounds(grid: &Grid) -> (DVec3, DVec3) {
+pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {
     let (xs, ys) = (grid.xs(), grid.ys());
     let (low, high) = grid.heights().unwrap_or((0.0, 0.0));
     (DVec3::new(xs[0], ys[0], low), DVec3::new(xs[xs.len() - 1], ys[ys.len() - 1], high))
@@ -155,7 +157,7 @@ fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), SurfaceErro
 }
 
 /// The parts of the domain around the eye; in orthographic projection there is one.
-fn parts(grid: &Grid, camera: &Camera) -> Vec<Part> {
+pub(super) fn parts(grid: &Grid, camera: &Camera) -> Vec<Part> {
     let Projection::Perspective { .. } = camera.projection() else {
         let forward = camera.forward();
         let sign = |f: f64| if f < 0.0 { -1.0 } else { 1.0 };
@@ -199,8 +201,12 @@ fn sides(values: &[f64], eye: f64) -> Vec<(f64, (Vec<u32>, First))> {
     let mut sides = Vec::new();
     for sign in [1.0, -1.0] {
         let index = |k: usize| if sign > 0.0 { k } else { n - 1 - k };
-        let beyond = |k: usize| (values[index(k)] - eye) * sign > 0.0 || values[index(k)] * sign > eye * sign;
-        let Some(first) = (0..n).find(|&k| beyond(k)) else { continue };
+        let beyond = |k: usize| {
+            (values[index(k)] - eye) * sign > 0.0 || values[index(k)] * sign > eye * sign
+        };
+        let Some(first) = (0..n).find(|&k| beyond(k)) else {
+            continue;
+        };
         let (start, kind) = match first.checked_sub(1) {
             None => (0, First::Beyond),
             Some(k) if values[index(k)] == eye => {

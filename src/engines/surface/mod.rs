@@ -2,9 +2,11 @@
 //!
 //! | engine | draws | hides by | cost |
 //! |---|---|---|---|
+//! | [`floating_horizon`] | grid lines | the nearer lines of the same family | samples + crossings |
 //! | [`max_min`] | both families of grid lines | the triangulated surface | samples + crossings |
 
 mod cells;
+pub mod floating_horizon;
 mod horizon;
 mod lines;
 pub mod max_min;

@@ -93,7 +93,10 @@ impl GridPieces {
     /// Sorts and joins what strips have found.
     pub(super) fn join(nx: usize, ny: usize, mut status: Vec<u8>, mut found: Vec<Piece>) -> Self {
         found.sort_unstable_by(|a, b| {
-            (a.edge.cmp(&b.edge)).then(a.t0.total_cmp(&b.t0)).then(a.side.cmp(&b.side)).then(a.t1.total_cmp(&b.t1))
+            (a.edge.cmp(&b.edge))
+                .then(a.t0.total_cmp(&b.t0))
+                .then(a.side.cmp(&b.side))
+                .then(a.t1.total_cmp(&b.t1))
         });
         let mut pieces: Vec<Piece> = Vec::with_capacity(found.len());
         let mut first = 0;

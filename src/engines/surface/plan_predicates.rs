@@ -44,9 +44,7 @@ impl Sight {
     /// in orthographic projection of the whole domain.
     pub(super) fn new(camera: &Camera, sx: f64, sy: f64, centre: DVec3) -> Self {
         match camera.projection() {
-            Projection::Perspective { .. } => {
-                Self { centre: camera.eye(), sx, sy, forward: None }
-            }
+            Projection::Perspective { .. } => Self { centre: camera.eye(), sx, sy, forward: None },
             Projection::Orthographic => {
                 let f = camera.forward();
                 let largest = f.abs().max_element();
@@ -74,7 +72,8 @@ impl Sight {
 
     /// Where the u of `p` lies compared with the u of `q`.
     pub(super) fn order(&self, p: DVec3, q: DVec3) -> Ordering {
-        if let Some(sign) = self.order_by_products(p, q).or_else(|| self.order_by_expansions(p, q)) {
+        if let Some(sign) = self.order_by_products(p, q).or_else(|| self.order_by_expansions(p, q))
+        {
             return sign;
         }
         let [p, q] = self.exact([p, q]);
@@ -120,12 +119,14 @@ impl Sight {
                 robust::orient2d(p, q, c) * self.sx * self.sy
             }
             Some(f) => {
-                let dx = exact_difference(p.x, q.x)? * self.sx;
-                let dy = exact_difference(p.y, q.y)? * self.sy;
-                if ![dx, dy, f.x, f.y].into_iter().all(in_window) {
+                let (dx, dx_error) = difference(p.x, q.x);
+                let (dy, dy_error) = difference(p.y, q.y);
+                if ![dx, dx_error, dy, dy_error, f.x, f.y].into_iter().all(in_window) {
                     return None;
                 }
-                robust::orient2d(coord(f.y, f.x), coord(dy, dx), coord(0.0, 0.0))
+                let (across, along) = (f.y * self.sx, -f.x * self.sy);
+                let products = [(across, dx), (across, dx_error), (along, dy), (along, dy_error)];
+                sign_of_sum(products)
             }
         };
         det.partial_cmp(&0.0)
@@ -140,7 +141,12 @@ impl Sight {
 
     /// Where the u of `p` lies compared with the crossing of two lines, each given from left to
     /// right.
-    pub(super) fn order_to_crossing(&self, p: DVec3, first: [DVec3; 2], second: [DVec3; 2]) -> Ordering {
+    pub(super) fn order_to_crossing(
+        &self,
+        p: DVec3,
+        first: [DVec3; 2],
+        second: [DVec3; 2],
+    ) -> Ordering {
         let [p, a, b, c, d] = self.exact([p, first[0], first[1], second[0], second[1]]);
         let w = cross(&cross(&a, &b), &cross(&c, &d));
         times(sign(&(&p[0] * &w[1] - &w[0] * &p[1])), sign(&w[1]))
@@ -153,10 +159,17 @@ impl Sight {
     }
 
     /// Whether the first line is above (`Greater`), on or below the second at a place.
-    pub(super) fn line_over_line(&self, first: [DVec3; 2], second: [DVec3; 2], at: Place) -> Ordering {
+    pub(super) fn line_over_line(
+        &self,
+        first: [DVec3; 2],
+        second: [DVec3; 2],
+        at: Place,
+    ) -> Ordering {
         let points = [first[0], first[1], second[0], second[1]];
         let scaled = self.scaled(&points, &[at]);
-        let [a, b, c, d] = &scaled.0[..] else { return Ordering::Equal };
+        let [a, b, c, d] = &scaled.0[..] else {
+            return Ordering::Equal;
+        };
         let at = &scaled.1[0];
         let (m, n) = (cross(a, b), cross(c, d));
         let height = |n: &Triple| &n[0] * &at[0] + &n[1] * &at[1];
@@ -181,7 +194,9 @@ impl Sight {
     pub(super) fn crossing_u(&self, first: [DVec3; 2], second: [DVec3; 2]) -> f64 {
         let points = [first[0], first[1], second[0], second[1]];
         let scaled = self.scaled(&points, &[]);
-        let [a, b, c, d] = &scaled.0[..] else { return 0.0 };
+        let [a, b, c, d] = &scaled.0[..] else {
+            return 0.0;
+        };
         let w = cross(&cross(a, b), &cross(c, d));
         // Keep 128 bits more of the numerator than of the denominator, then shift back.
         let shift = 128 + w[1].clone().into_parts().1.bit_len() as isize
@@ -207,9 +222,9 @@ impl Sight {
         });
         let all = points.iter().copied().chain(vertices).chain([self.centre]);
         let unit = all.flat_map(|p| p.to_array()).filter_map(exponent).min().unwrap_or(0);
-        let f_unit = self.forward.map_or(0, |f| {
-            f.to_array().into_iter().filter_map(exponent).min().unwrap_or(0)
-        });
+        let f_unit = self
+            .forward
+            .map_or(0, |f| f.to_array().into_iter().filter_map(exponent).min().unwrap_or(0));
         let triples = points.iter().map(|&p| self.triple(p, unit, f_unit)).collect();
         let places = places
             .iter()
@@ -266,12 +281,32 @@ fn in_window(value: f64) -> bool {
     value == 0.0 || WINDOW.contains(&value.abs())
 }
 
-/// `a − b`, if it is a number (Knuth's test for the rounding error of a difference).
-fn exact_difference(a: f64, b: f64) -> Option<f64> {
+/// `a − b` and its rounding error (Knuth).
+fn difference(a: f64, b: f64) -> (f64, f64) {
     let difference = a - b;
     let b_part = a - difference;
-    let error = (a - (difference + b_part)) + (b_part - b);
-    (error == 0.0).then_some(difference)
+    (difference, (a - (difference + b_part)) + (b_part - b))
+}
+
+/// A number with the sign of the sum of products, exactly: an expansion that grows by each product
+/// and its rounding error (Shewchuk 1997, section 2.4).
+fn sign_of_sum(products: [(f64, f64); 4]) -> f64 {
+    let mut expansion = [0.0; 8];
+    let mut length = 0;
+    for (a, b) in products {
+        let product = a * b;
+        for term in [a.mul_add(b, -product), product] {
+            let mut carried = term;
+            for part in &mut expansion[..length] {
+                let (sum, error) = difference(carried, -*part);
+                *part = error;
+                carried = sum;
+            }
+            expansion[length] = carried;
+            length += 1;
+        }
+    }
+    expansion.into_iter().rev().find(|part| *part != 0.0).unwrap_or(0.0)
 }
 
 type Triple = [IBig; 3];

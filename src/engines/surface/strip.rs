@@ -74,9 +74,8 @@ impl<'a, S: Samples> Strip<'a, S> {
             Ordering::Equal => return None,
             Ordering::Greater => (b, a),
         };
-        let outside = |id: u32, s: f64, at: fn(DVec3) -> f64| {
-            at(point(id)) * s < at(sight.centre) * s
-        };
+        let outside =
+            |id: u32, s: f64, at: fn(DVec3) -> f64| at(point(id)) * s < at(sight.centre) * s;
         let out = |id: u32| outside(id, sight.sx, |p| p.x) || outside(id, sight.sy, |p| p.y);
         let (a_out, b_out) = (out(a), out(b));
         if a_out && b_out && !(outside(a, sight.sx, |p| p.x) && outside(b, sight.sy, |p| p.y)) {
@@ -186,7 +185,12 @@ impl<'a, S: Samples> Strip<'a, S> {
 }
 
 /// Where a stop lies on the edge, from 0 at the sample with the smaller number to 1.
-fn place<S: Samples>(plane: &Plane<S>, segment: &Segment, stop: Stop, (from, to): (f64, f64)) -> f64 {
+fn place<S: Samples>(
+    plane: &Plane<S>,
+    segment: &Segment,
+    stop: Stop,
+    (from, to): (f64, f64),
+) -> f64 {
     let (a, b) = segment.ids();
     let (first, last) = (plane.samples.point(a.min(b)), plane.samples.point(a.max(b)));
     let u = match stop {

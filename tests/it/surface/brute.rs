@@ -139,9 +139,9 @@ pub(super) fn grid_lines(grid: &Grid, eye: Point, scale: f64) -> Vec<Vec<(f64, f
             let (p, q) = (point(a.0, a.1), point(b.0, b.1));
             let d = |k: usize| [p[k], q[k], eye[k]];
             // An edge whose image is a point is left to the engine.
-            let collinear = [(0, 1), (0, 2), (1, 2)].iter().all(|&(k, l)| {
-                det3(d(k), d(l), [1, 1, eye[3]]) == 0
-            });
+            let collinear = [(0, 1), (0, 2), (1, 2)]
+                .iter()
+                .all(|&(k, l)| det3(d(k), d(l), [1, 1, eye[3]]) == 0);
             if collinear { vec![(f64::NAN, f64::NAN)] } else { visible(eye, p, q, &triangles) }
         })
         .collect()
@@ -150,9 +150,91 @@ pub(super) fn grid_lines(grid: &Grid, eye: Point, scale: f64) -> Vec<Vec<(f64, f
 /// Length of the parts of 0..1 that are in one list of disjoint intervals but not in the other.
 pub(super) fn difference(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     let length = |list: &[(f64, f64)]| list.iter().map(|(from, to)| to - from).sum::<f64>();
-    let common: f64 = a
-        .iter()
-        .flat_map(|p| b.iter().map(move |q| (p.1.min(q.1) - p.0.max(q.0)).max(0.0)))
-        .sum();
+    let common: f64 =
+        a.iter().flat_map(|p| b.iter().map(move |q| (p.1.min(q.1) - p.0.max(q.0)).max(0.0))).sum();
     length(a) + length(b) - 2.0 * common
+}
+
+/// What is visible of one family of lines by the sentence that defines the floating horizon: at
+/// least as high as all nearer lines of the family at the same u, or at most as high.
+pub(super) fn one_family(
+    grid: &Grid,
+    eye: Point,
+    scale: f64,
+    along_x: bool,
+) -> Vec<Vec<(f64, f64)>> {
+    // Swapping x and y turns one family into the other and leaves heights alone.
+    let swap = |p: Point| if along_x { p } else { [p[1], p[0], p[2], p[3]] };
+    let (xs, ys) = if along_x { (grid.xs(), grid.ys()) } else { (grid.ys(), grid.xs()) };
+    let eye = swap(eye);
+    let point = |i: usize, j: usize| -> Point {
+        let k = if along_x { j * xs.len() + i } else { i * ys.len() + j };
+        let p = grid.point(k as u32) * scale;
+        swap([p.x as Int, p.y as Int, p.z as Int, 1])
+    };
+    // How far a line lies from the eye across it, and on which side.
+    let side = |j: usize| {
+        if eye[3] == 0 { -eye[1] * point(0, j)[1] } else { point(0, j)[1] - eye[1] }
+    };
+    let nearer = |j: usize, than: usize| {
+        if eye[3] == 0 {
+            side(j) < side(than)
+        } else {
+            side(j) * side(than) > 0 && side(j).abs() < side(than).abs()
+        }
+    };
+    let radial = |j: usize| {
+        if eye[3] == 0 { eye[1] == 0 } else { side(j) == 0 }
+    };
+    // Twice the area of the plan triangle of the eye and two points.
+    let plan =
+        |a: Point, b: Point| det3([a[0], a[1], a[3]], [b[0], b[1], b[3]], [eye[0], eye[1], eye[3]]);
+    let at = |f: (Int, Int), t: f64| f.0 as f64 * (1.0 - t) + f.1 as f64 * t;
+    let mut lines = Vec::new();
+    for j in 0..ys.len() {
+        for i in 0..xs.len() - 1 {
+            let (p, q) = (point(i, j), point(i + 1, j));
+            if radial(j) {
+                lines.push(vec![(0.0, 1.0)]);
+                continue;
+            }
+            let mut tests = Vec::new();
+            let mut places = vec![0.0, 1.0];
+            for k in (0..ys.len()).filter(|&k| nearer(k, j)) {
+                for l in 0..xs.len() - 1 {
+                    let (a, b) = (point(l, k), point(l + 1, k));
+                    let turn = plan(a, b).signum();
+                    let from = (plan(a, p) * turn, plan(a, q) * turn);
+                    let to = (plan(p, b) * turn, plan(q, b) * turn);
+                    let up = det4([eye, a, b, [0, 0, 1, 0]]).signum();
+                    let over = (det4([eye, a, b, p]) * up, det4([eye, a, b, q]) * up);
+                    for f in [from, to, over] {
+                        if f.0 != f.1 {
+                            places.push((f.0 as f64 / (f.0 - f.1) as f64).clamp(0.0, 1.0));
+                        }
+                    }
+                    tests.push((from, to, over));
+                }
+            }
+            places.sort_by(f64::total_cmp);
+            let mut found: Vec<(f64, f64)> = Vec::new();
+            for pair in places.windows(2) {
+                let t = (pair[0] + pair[1]) / 2.0;
+                let heights = tests
+                    .iter()
+                    .filter(|(from, to, _)| at(*from, t) > 0.0 && at(*to, t) > 0.0)
+                    .map(|(.., over)| if *over == (0, 0) { 0.0 } else { at(*over, t) });
+                let (low, high) = heights
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+                if pair[0] < pair[1] && (low >= 0.0 || high <= 0.0) {
+                    match found.last_mut() {
+                        Some(last) if last.1 == pair[0] => last.1 = pair[1],
+                        _ => found.push((pair[0], pair[1])),
+                    }
+                }
+            }
+            lines.push(found);
+        }
+    }
+    lines
 }

@@ -7,7 +7,7 @@ use hiddenline::view::{Camera, Projection};
 
 use super::brute;
 
-const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 40.0, near: 1e-6 };
+pub(super) const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 40.0, near: 1e-6 };
 
 /// A small generator of whole numbers (Knuth's MMIX constants), so that failures repeat.
 pub(super) struct Dice(pub(super) u64);
@@ -39,11 +39,17 @@ pub(super) fn intervals(pieces: &GridPieces) -> Vec<Vec<(f64, f64)>> {
 }
 
 /// Rough surfaces of several kinds, with whole heights.
-fn rough(dice: &mut Dice, kind: u64, nx: usize, ny: usize) -> Grid {
+pub(super) fn rough(dice: &mut Dice, kind: u64, nx: usize, ny: usize) -> Grid {
     let heights = (0..nx * ny)
         .map(|_| match kind {
             0 => dice.roll(16) as f64 - 8.0,
-            1 => if dice.roll(6) == 0 { dice.roll(60) as f64 } else { 0.0 },
+            1 => {
+                if dice.roll(6) == 0 {
+                    dice.roll(60) as f64
+                } else {
+                    0.0
+                }
+            }
             2 => dice.roll(2) as f64 * 4.0,
             3 => dice.roll(3) as f64,
             _ => (dice.roll(1024) as f64 - 512.0) / 64.0,
@@ -101,7 +107,7 @@ fn check(grid: &Grid, camera: &Camera, name: &str) -> bool {
 }
 
 /// An eye left of, in, or right of a range; half of those inside stand on a grid line.
-fn coordinate(dice: &mut Dice, region: u64, lines: &[f64]) -> f64 {
+pub(super) fn coordinate(dice: &mut Dice, region: u64, lines: &[f64]) -> f64 {
     let (low, high) = (lines[0], lines[lines.len() - 1]);
     let part = |dice: &mut Dice| (1 + dice.roll(24)) as f64 / 4.0;
     match region {
@@ -127,7 +133,8 @@ fn rough_surfaces_equal_brute_force_in_perspective_from_all_nine_regions() {
             z,
         );
         let target = eye + dvec3(1.0 - dice.roll(3) as f64, 2.0 - dice.roll(3) as f64, -0.5);
-        checked += u64::from(check(&grid, &camera(eye, target, PERSPECTIVE), &format!("round {round}")));
+        checked +=
+            u64::from(check(&grid, &camera(eye, target, PERSPECTIVE), &format!("round {round}")));
     }
     assert!(checked > 450, "only {checked} scenes had the eye off the surface");
 }
@@ -184,8 +191,7 @@ fn valleys_of_a_triangle_wave_are_hidden_where_the_closed_form_says() {
 fn sides_of_a_paraboloid_change_at_its_closed_form_contour() {
     let n = 201;
     let lines = hiddenline::surface::evenly(-2.0, 2.0, n);
-    let heights =
-        lines.iter().flat_map(|y| lines.iter().map(move |x| x * x + y * y)).collect();
+    let heights = lines.iter().flat_map(|y| lines.iter().map(move |x| x * x + y * y)).collect();
     let grid = Grid::new(lines.clone(), lines, heights).expect("a grid");
     let eye = dvec3(-3.0, -1.0, 6.0);
     let radius = (eye.x * eye.x + eye.y * eye.y - eye.z).sqrt();
@@ -209,7 +215,8 @@ fn sides_of_a_paraboloid_change_at_its_closed_form_contour() {
 
 #[test]
 fn an_eye_on_the_surface_and_holes_are_refused() {
-    let grid = |z| Grid::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![0.0, 0.0, 0.0, z]).expect("a grid");
+    let grid =
+        |z| Grid::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![0.0, 0.0, 0.0, z]).expect("a grid");
     let camera = camera(dvec3(0.75, 0.25, 0.25), DVec3::ZERO, PERSPECTIVE);
     let solve = |grid: &Grid| max_min::solve(grid, &camera, Order::Rows).expect_err("no drawing");
     assert_eq!(solve(&grid(1.0)), SurfaceError::EyeOnSurface);
@@ -235,6 +242,10 @@ fn rough_surfaces_equal_brute_force_in_orthographic_views() {
         if forward == DVec3::ZERO {
             continue;
         }
-        check(&grid, &camera(DVec3::ZERO, forward, Projection::Orthographic), &format!("round {round}"));
+        check(
+            &grid,
+            &camera(DVec3::ZERO, forward, Projection::Orthographic),
+            &format!("round {round}"),
+        );
     }
 }
