@@ -230,7 +230,7 @@ fn unknown(name: &str, variables: Variables) -> Problem {
     let near = known
         .map(|known| (edit_distance(name, known), *known))
         .min()
-        .filter(|(distance, known)| *distance <= 2 && *distance < known.len())
+        .filter(|(distance, _)| *distance <= 2 && 2 * distance < name.chars().count())
         .map(|(_, known)| known);
     Problem::UnknownName { name: name.to_owned(), near }
 }
