@@ -105,7 +105,9 @@ pub fn read_csv(text: &str, placement: Placement) -> Result<Grid, CsvError> {
     }
     let place =
         |axis: char, range: Option<(f64, f64)>, given: Option<Vec<f64>>, n: usize| match range {
-            Some((from, to)) if !(from < to) => Err(GridError::Range { axis, from, to }),
+            Some((from, to)) if from.partial_cmp(&to) != Some(std::cmp::Ordering::Less) => {
+                Err(GridError::Range { axis, from, to })
+            }
             Some((from, to)) => Ok(evenly(from, to, n)),
             None => Ok(given.unwrap_or_else(|| evenly(0.0, n.saturating_sub(1) as f64, n))),
         };

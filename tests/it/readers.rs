@@ -28,9 +28,15 @@ fn refused(name: &str, bytes: impl AsRef<[u8]>) -> ReadError {
 #[track_caller]
 fn assert_message(error: &ReadError, begin: &str, part: &str) {
     let message = error.to_string();
-    assert!(message.starts_with(begin), "`{message}` does not begin with `{begin}`");
+    assert!(
+        message.starts_with(begin),
+        "`{message}` does not begin with `{begin}`"
+    );
     assert!(message.contains(part), "`{message}` does not say `{part}`");
-    assert!(!message.contains('\n'), "`{message}` has more than one line");
+    assert!(
+        !message.contains('\n'),
+        "`{message}` has more than one line"
+    );
 }
 
 /// The folder of real models beside the repository, if it is there.
@@ -55,15 +61,35 @@ fn malformed_files_are_refused_with_place_and_reason() {
         ("empty.obj", None, "empty"),
         ("empty.stl", None, "empty"),
         ("nan_vertex.stl", None, "not finite"),
-        ("overflow_numbers.obj", Some(2), "`1e400` is not a finite number"),
-        ("tinyobj_invalid_face.obj", None, "all 2 faces have fewer than three"),
+        (
+            "overflow_numbers.obj",
+            Some(2),
+            "`1e400` is not a finite number",
+        ),
+        (
+            "tinyobj_invalid_face.obj",
+            None,
+            "all 2 faces have fewer than three",
+        ),
         ("tinyobj_invalid_relative_index.obj", Some(1), "vertex -4"),
-        ("tinyobj_test_nan.obj", Some(12), "`nan` is not a finite number"),
+        (
+            "tinyobj_test_nan.obj",
+            Some(12),
+            "`nan` is not a finite number",
+        ),
         ("tinyobj_zero_face_index.obj", Some(16), "vertex 0"),
-        ("tobj_invalid_index.obj", Some(12), "vertex 7, but there are only 6"),
+        (
+            "tobj_invalid_index.obj",
+            Some(12),
+            "vertex 7, but there are only 6",
+        ),
         ("trimesh_points_only.obj", None, "8 points only"),
         ("trimesh_wireframe_only.obj", None, "12 line records only"),
-        ("truncated_binary.stl", None, "4 triangles expected, there are bytes for 2"),
+        (
+            "truncated_binary.stl",
+            None,
+            "4 triangles expected, there are bytes for 2",
+        ),
     ] {
         let path = models.join("malformed").join(file);
         let error = read_file(&path, None).expect_err(file);
@@ -80,14 +106,24 @@ fn odd_but_sound_files_are_drawn() {
         ("line_continuation.obj", 3, 1, &[]),
         ("utf16_bom.obj", 3, 1, &[]),
         ("solid_header_binary.stl", 4, 4, &[]),
-        ("trailing_bytes.stl", 4, 4, &["100 bytes after the end of the model ignored"]),
+        (
+            "trailing_bytes.stl",
+            4,
+            4,
+            &["100 bytes after the end of the model ignored"],
+        ),
         (
             "two_vertex_face.obj",
             3,
             1,
             &["2 faces with fewer than three different corners left out, first on line 4"],
         ),
-        ("draco_deg_faces.obj", 5, 3, &["1 face with fewer than three different corners left out"]),
+        (
+            "draco_deg_faces.obj",
+            5,
+            3,
+            &["1 face with fewer than three different corners left out"],
+        ),
     ] {
         let path = models.join("malformed").join(file);
         let model = read_file(&path, None).unwrap_or_else(|error| panic!("refused: {error}"));
@@ -97,8 +133,10 @@ fn odd_but_sound_files_are_drawn() {
             "{file}"
         );
         let said: Vec<_> = model.warnings.iter().map(ToString::to_string).collect();
-        let expected: Vec<_> =
-            warnings.iter().map(|text| format!("{}: {text}", path.display())).collect();
+        let expected: Vec<_> = warnings
+            .iter()
+            .map(|text| format!("{}: {text}", path.display()))
+            .collect();
         assert_eq!(said, expected, "{file}");
     }
 }
@@ -129,12 +167,32 @@ fn real_models_have_the_counts_of_their_index() {
             .find_map(|property| property.strip_suffix(" unused vertices")?.parse().ok());
         let model = read_file(&models.join(columns[0]), None).expect(columns[0]);
         let n_vertices = model.mesh.positions().len();
-        assert_eq!(n_vertices, distinct.unwrap_or(vertices), "vertices of {}", columns[0]);
+        assert_eq!(
+            n_vertices,
+            distinct.unwrap_or(vertices),
+            "vertices of {}",
+            columns[0]
+        );
         // Zero-area triangles with two equal corners are dropped.
         let dropped = model.repairs.degenerate_faces;
-        assert_eq!(model.mesh.n_faces() + dropped, faces, "faces of {}", columns[0]);
-        assert_eq!(model.repairs.unused_vertices, unused.unwrap_or(0), "unused in {}", columns[0]);
-        assert_eq!(model.warnings.is_empty(), dropped == 0, "{:?}", model.warnings);
+        assert_eq!(
+            model.mesh.n_faces() + dropped,
+            faces,
+            "faces of {}",
+            columns[0]
+        );
+        assert_eq!(
+            model.repairs.unused_vertices,
+            unused.unwrap_or(0),
+            "unused in {}",
+            columns[0]
+        );
+        assert_eq!(
+            model.warnings.is_empty(),
+            dropped == 0,
+            "{:?}",
+            model.warnings
+        );
         n_models += 1;
     }
     assert_eq!(n_models, 27);
@@ -152,20 +210,33 @@ const CUBE: [[f64; 3]; 8] = [
 ];
 
 /// Quads, named so that vertices are first used in their own order.
-const CUBE_FACES: [[u32; 4]; 6] =
-    [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+const CUBE_FACES: [[u32; 4]; 6] = [
+    [0, 1, 2, 3],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
 
 fn cube() -> Mesh {
-    let mut soup =
-        PolygonSoup { positions: CUBE.map(DVec3::from_array).to_vec(), ..PolygonSoup::default() };
+    let mut soup = PolygonSoup {
+        positions: CUBE.map(DVec3::from_array).to_vec(),
+        ..PolygonSoup::default()
+    };
     CUBE_FACES.iter().for_each(|face| soup.push_face(face));
     Mesh::new(soup).expect("a cube").0
 }
 
 /// The cube with positions as single precision has them, each quad cut into two triangles.
 fn single_precision_triangles() -> Mesh {
-    let positions = CUBE.map(|p| DVec3::from_array(p.map(|c| f64::from(c as f32)))).to_vec();
-    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
+    let positions = CUBE
+        .map(|p| DVec3::from_array(p.map(|c| f64::from(c as f32))))
+        .to_vec();
+    let mut soup = PolygonSoup {
+        positions,
+        ..PolygonSoup::default()
+    };
     for [a, b, c, d] in CUBE_FACES {
         soup.push_face(&[a, b, c]);
         soup.push_face(&[a, c, d]);
@@ -221,19 +292,33 @@ fn one_cube_written_in_many_ways_is_one_mesh() {
             let [a, b, c, d] = face;
             write!(body, "4 {a} {b} {c} {d}{line_end}").expect("text");
         }
-        for head in ["OFF\n8 6 12", "OFF 8 6 12", "COFF\n# comment\n\n8 6 0", "8 6"] {
+        for head in [
+            "OFF\n8 6 12",
+            "OFF 8 6 12",
+            "COFF\n# comment\n\n8 6 0",
+            "8 6",
+        ] {
             let text = format!("{head}{line_end}{body}");
             assert_eq!(good("cube.off", &text).mesh, cube, "{text:?}");
         }
     }
     for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
         for list in ["uchar int vertex_indices", "uint uchar vertex_index"] {
-            assert_eq!(good("cube.ply", ply_cube(encoding, list)).mesh, cube, "{encoding} {list}");
+            assert_eq!(
+                good("cube.ply", ply_cube(encoding, list)).mesh,
+                cube,
+                "{encoding} {list}"
+            );
         }
     }
     let from_text = ply_cube("ascii", "uchar int vertex_indices");
-    let carriage_returns = from_text.iter().map(|&c| if c == b'\n' { b'\r' } else { c });
-    assert_eq!(good("cube.ply", carriage_returns.collect::<Vec<_>>()).mesh, cube);
+    let carriage_returns = from_text
+        .iter()
+        .map(|&c| if c == b'\n' { b'\r' } else { c });
+    assert_eq!(
+        good("cube.ply", carriage_returns.collect::<Vec<_>>()).mesh,
+        cube
+    );
 }
 
 fn ply_cube(encoding: &str, list: &str) -> Vec<u8> {
@@ -244,8 +329,9 @@ fn ply_cube(encoding: &str, list: &str) -> Vec<u8> {
     )
     .into_bytes();
     if encoding == "ascii" {
-        let text =
-            String::from_utf8(bytes).expect("text").replace("element nothing 3000000000\n", "");
+        let text = String::from_utf8(bytes)
+            .expect("text")
+            .replace("element nothing 3000000000\n", "");
         bytes = text.replace("double", "float").into_bytes();
         for [x, y, z] in CUBE {
             bytes.extend(format!("255 {x} {y} {z:e}\n").bytes());
@@ -288,7 +374,9 @@ fn binary_stl(header: &[u8]) -> Vec<u8> {
         for triangle in [[a, b, c], [a, c, d]] {
             bytes.extend([0xFF; 12]);
             for corner in triangle {
-                CUBE[corner as usize].iter().for_each(|&c| bytes.extend((c as f32).to_le_bytes()));
+                CUBE[corner as usize]
+                    .iter()
+                    .for_each(|&c| bytes.extend((c as f32).to_le_bytes()));
             }
             bytes.extend([0, 0]);
         }
@@ -305,7 +393,11 @@ fn text_stl(solids: usize) -> String {
         for triangle in [[a, b, c], [a, c, d]] {
             text.push_str(" facet normal nan 0 -0\n  outer loop\n");
             for [x, y, z] in triangle.map(|corner| CUBE[corner as usize]) {
-                let (x, y, z) = (f64::from(x as f32), f64::from(y as f32), f64::from(z as f32));
+                let (x, y, z) = (
+                    f64::from(x as f32),
+                    f64::from(y as f32),
+                    f64::from(z as f32),
+                );
                 writeln!(text, "   vertex {x} {y} {z:E}").expect("text");
             }
             text.push_str("  endloop\n endfacet\n");
@@ -321,7 +413,11 @@ fn text_stl(solids: usize) -> String {
 fn one_cube_written_as_stl_of_any_kind_is_one_mesh() {
     let cube = single_precision_triangles();
     for header in [&b""[..], b"solid", b"solid facet normal 0 0 0\n", b"\0\xFF"] {
-        assert_eq!(good("cube.stl", binary_stl(header)).mesh, cube, "{header:?}");
+        assert_eq!(
+            good("cube.stl", binary_stl(header)).mesh,
+            cube,
+            "{header:?}"
+        );
     }
     let text = text_stl(1);
     for text in [
@@ -336,7 +432,10 @@ fn one_cube_written_as_stl_of_any_kind_is_one_mesh() {
     }
     for solids in [2, 3] {
         let mesh = good("cube.stl", text_stl(solids)).mesh;
-        assert_eq!((mesh.positions(), mesh.corners()), (cube.positions(), cube.corners()));
+        assert_eq!(
+            (mesh.positions(), mesh.corners()),
+            (cube.positions(), cube.corners())
+        );
         assert_eq!(mesh.parts().len(), solids);
         assert_eq!(mesh.face_parts()[11] as usize, solids - 1);
     }
@@ -350,15 +449,25 @@ fn content_tells_the_format_where_the_name_does_not() {
         (binary_stl(b""), ModelFormat::Stl),
         (text_stl(1).into_bytes(), ModelFormat::Stl),
         (ply, ModelFormat::Ply),
-        (b"# a comment\nNOFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec(), ModelFormat::Off),
+        (
+            b"# a comment\nNOFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec(),
+            ModelFormat::Off,
+        ),
         (one.as_bytes().to_vec(), ModelFormat::Obj),
-        (format!("\n# OFF\n\nmtllib x\n{one}").into_bytes(), ModelFormat::Obj),
+        (
+            format!("\n# OFF\n\nmtllib x\n{one}").into_bytes(),
+            ModelFormat::Obj,
+        ),
     ] {
         for name in ["<stdin>", "model", "model.txt", "obj"] {
             assert_eq!(good(name, &bytes).format, format);
         }
     }
-    assert_message(&refused("x", "hello world"), "x: ", "cannot tell the format");
+    assert_message(
+        &refused("x", "hello world"),
+        "x: ",
+        "cannot tell the format",
+    );
     assert_message(&refused("x", "\0\0\0"), "x: ", "cannot tell the format");
     assert_eq!(good("MODEL.OBJ", one).format, ModelFormat::Obj);
     assert!(read_bytes("x.stl", one.as_bytes(), Some(ModelFormat::Obj)).is_ok());
@@ -380,11 +489,19 @@ fn obj_comments_end_before_lines_are_joined() {
         ("xyz \\\nf 1 2 3\nf 2 3 4\n", &[3]),
     ] {
         let model = good("x.obj", format!("{vertices}{faces}"));
-        let sizes: Vec<_> = model.mesh.face_starts().windows(2).map(|w| w[1] - w[0]).collect();
+        let sizes: Vec<_> = model
+            .mesh
+            .face_starts()
+            .windows(2)
+            .map(|w| w[1] - w[0])
+            .collect();
         assert_eq!(sizes, expected, "{faces:?}");
     }
     // Lines are counted as the file has them.
-    let error = refused("x.obj", format!("{vertices}\\\n\\\n# \\\nf 1 2 \\\r\n 3 \\\r\n 5 6"));
+    let error = refused(
+        "x.obj",
+        format!("{vertices}\\\n\\\n# \\\nf 1 2 \\\r\n 3 \\\r\n 5 6"),
+    );
     assert_message(&error, "x.obj:10: ", "vertex 6, but there are only 4");
     let error = refused("x.obj", format!("{vertices}f 1 2 3 \\\n\\\nx"));
     assert_message(&error, "x.obj:7: ", "`x` is not the number of a vertex");
@@ -409,8 +526,14 @@ fn obj_numbers_are_the_nearest_doubles() {
     ] {
         let value: f64 = word.parse().expect(word);
         for (name, text) in [
-            ("x.obj", format!("v 3 0 {word}\nv 1 0 0 0.5 7\nv 0 1 0 1 0 0 9\nf 1 2 3\n")),
-            ("x.off", format!("OFF\n3 1 0\n3 0 {word}\n1 0 0 0.5\n0 1 0 1 0 0\n3 0 1 2 255 0 0\n")),
+            (
+                "x.obj",
+                format!("v 3 0 {word}\nv 1 0 0 0.5 7\nv 0 1 0 1 0 0 9\nf 1 2 3\n"),
+            ),
+            (
+                "x.off",
+                format!("OFF\n3 1 0\n3 0 {word}\n1 0 0 0.5\n0 1 0 1 0 0\n3 0 1 2 255 0 0\n"),
+            ),
             (
                 "x.stl",
                 format!(
@@ -420,7 +543,11 @@ fn obj_numbers_are_the_nearest_doubles() {
             ),
         ] {
             let positions = good(name, text).mesh.positions().to_vec();
-            let expected = [dvec3(3.0, 0.0, value), dvec3(1.0, 0.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+            let expected = [
+                dvec3(3.0, 0.0, value),
+                dvec3(1.0, 0.0, 0.0),
+                dvec3(0.0, 1.0, 0.0),
+            ];
             assert_eq!(positions, expected, "{word} in {name}");
         }
     }
@@ -447,7 +574,10 @@ fn obj_numbers_are_the_nearest_doubles() {
         "x.obj:1: ",
         "3 numbers expected for a vertex, 2 found",
     );
-    let long = good("x.obj", format!("v 1{zeros}e-400 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3"));
+    let long = good(
+        "x.obj",
+        format!("v 1{zeros}e-400 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3"),
+    );
     assert_eq!(long.mesh.positions()[0], dvec3(1.0, 0.0, 0.0));
 }
 
@@ -456,8 +586,11 @@ fn obj_groups_and_materials_become_parts_in_file_order() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no  my  box # note\nusemtl red#1\nf 1 2 3\n\
                 f 3 2 1\ng lid\nf 1 2 3\no my box\nf 1 2 3\ng unused\n";
     let mesh = good("x.obj", text).mesh;
-    let parts: Vec<_> =
-        mesh.parts().iter().map(|p| (p.group.as_str(), p.material.as_str())).collect();
+    let parts: Vec<_> = mesh
+        .parts()
+        .iter()
+        .map(|p| (p.group.as_str(), p.material.as_str()))
+        .collect();
     assert_eq!(parts, [("", ""), ("my box", "red#1"), ("lid", "red#1")]);
     assert_eq!(mesh.face_parts(), [0, 1, 1, 2, 1]);
     assert_eq!(mesh.positions().len(), 3);
@@ -479,18 +612,33 @@ fn what_obj_readers_skip_they_say() {
         ]
     );
     let many: String = (0..1000).map(|i| format!("junk{i}\n")).collect();
-    let model = good("x.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{many}"));
+    let model = good(
+        "x.obj",
+        format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{many}"),
+    );
     assert_eq!(model.warnings.len(), 7);
-    assert_eq!(model.warnings[6].notice, Notice::OtherUnknownRecords { count: 994 });
+    assert_eq!(
+        model.warnings[6].notice,
+        Notice::OtherUnknownRecords { count: 994 }
+    );
 }
 
 #[test]
 fn missing_vertices_are_named_in_every_format() {
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    for index in ["4", "-4", "99999999999999999999999", "-99999999999999999999999", "4/1/1"] {
+    for index in [
+        "4",
+        "-4",
+        "99999999999999999999999",
+        "-99999999999999999999999",
+        "4/1/1",
+    ] {
         let index_shown = index.trim_end_matches("/1/1");
-        for face in [format!("f 1 2 {index}"), format!("f 1 {index} # note"), format!("f\t{index}")]
-        {
+        for face in [
+            format!("f 1 2 {index}"),
+            format!("f 1 {index} # note"),
+            format!("f\t{index}"),
+        ] {
             let error = refused("x.obj", format!("{obj}{face}\nf 1 2 3\n"));
             assert_message(
                 &error,
@@ -499,25 +647,61 @@ fn missing_vertices_are_named_in_every_format() {
             );
         }
     }
-    assert_message(&refused("x.obj", format!("{obj}f 1 2 0/1")), "x.obj:4: ", "vertex 0");
-    assert_message(&refused("x.obj", format!("{obj}f 1 2 /3")), "x.obj:4: ", "`/3`");
+    assert_message(
+        &refused("x.obj", format!("{obj}f 1 2 0/1")),
+        "x.obj:4: ",
+        "vertex 0",
+    );
+    assert_message(
+        &refused("x.obj", format!("{obj}f 1 2 /3")),
+        "x.obj:4: ",
+        "`/3`",
+    );
     let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
-    assert_message(&refused("x.off", format!("{off}3 0 1 3")), "x.off:6: ", "vertex 3");
-    assert_message(&refused("x.off", format!("{off}3 0 1 -1")), "x.off:6: ", "`-1`");
-    assert_message(&refused("x.off", format!("{off}3 0 1")), "x.off:6: ", "3 numbers expected");
+    assert_message(
+        &refused("x.off", format!("{off}3 0 1 3")),
+        "x.off:6: ",
+        "vertex 3",
+    );
+    assert_message(
+        &refused("x.off", format!("{off}3 0 1 -1")),
+        "x.off:6: ",
+        "`-1`",
+    );
+    assert_message(
+        &refused("x.off", format!("{off}3 0 1")),
+        "x.off:6: ",
+        "3 numbers expected",
+    );
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
                property float z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n\
                0 0 0\n1 0 0\n0 1 0\n";
-    assert_message(&refused("x.ply", format!("{ply}3 0 1 3\n")), "x.ply:13: ", "vertex 3");
-    assert_message(&refused("x.ply", format!("{ply}3 0 1 -1\n")), "x.ply:13: ", "vertex -1");
+    assert_message(
+        &refused("x.ply", format!("{ply}3 0 1 3\n")),
+        "x.ply:13: ",
+        "vertex 3",
+    );
+    assert_message(
+        &refused("x.ply", format!("{ply}3 0 1 -1\n")),
+        "x.ply:13: ",
+        "vertex -1",
+    );
     assert_message(&refused("x.ply", format!("{ply}3 0 1\n")), "x.ply:13: ", "");
-    assert_message(&refused("x.ply", ply), "x.ply", "1 elements `face` expected");
+    assert_message(
+        &refused("x.ply", ply),
+        "x.ply",
+        "1 elements `face` expected",
+    );
     assert_message(
         &refused("x.ply", ply.replace("1 0 0", "1 1e999 0")),
         "x.ply:11: ",
         "not finite",
     );
-    assert_message(&refused("x.ply", ply.replace("1 0 0", "1 nan 0")), "x.ply:11: ", "");
+    assert_message(
+        &refused("x.ply", ply.replace("1 0 0", "1 nan 0")),
+        "x.ply:11: ",
+        "",
+    );
     let model = good("x.ply", format!("{ply}3 0 1 2\n\nmore"));
     assert_eq!(model.warnings[0].notice, Notice::TrailingBytes { count: 4 });
 }
@@ -538,24 +722,57 @@ fn hostile_counts_are_refused_without_memory_for_them() {
         refused("x.ply", ply(count, "1", "uchar int", "ascii", b"0 0 0\n"));
         refused("x.ply", ply("1", count, "uchar int", binary, &[0; 12]));
         refused("x.ply", ply("1", count, "uchar int", binary, &[0; 100_000]));
-        refused("x.ply", ply("1", count, "uchar int", "ascii", b"0 0 0\n3 0 0 0\n"));
+        refused(
+            "x.ply",
+            ply("1", count, "uchar int", "ascii", b"0 0 0\n3 0 0 0\n"),
+        );
     }
-    refused("x.ply", ply("99999999999999999999999", "1", "uchar int", "ascii", b"0 0 0\n"));
+    refused(
+        "x.ply",
+        ply(
+            "99999999999999999999999",
+            "1",
+            "uchar int",
+            "ascii",
+            b"0 0 0\n",
+        ),
+    );
     refused("x.ply", ply("1", "1", "uint int", binary, &[0xFF; 40]));
     refused("x.ply", ply("1", "1", "int int", binary, &[0xFF; 40]));
-    refused("x.ply", ply("1", "1", "uint int", "ascii", b"0 0 0\n4294967295 0\n"));
-    refused("x.ply", ply("1", "1", "uint float", "ascii", b"0 0 0\n3 0 0 0\n"));
-    for counts in ["4294967295 1 0", "1 4294967295 0", "18446744073709551615 1", "-1 1 0", "1"] {
+    refused(
+        "x.ply",
+        ply("1", "1", "uint int", "ascii", b"0 0 0\n4294967295 0\n"),
+    );
+    refused(
+        "x.ply",
+        ply("1", "1", "uint float", "ascii", b"0 0 0\n3 0 0 0\n"),
+    );
+    for counts in [
+        "4294967295 1 0",
+        "1 4294967295 0",
+        "18446744073709551615 1",
+        "-1 1 0",
+        "1",
+    ] {
         refused("x.off", format!("OFF\n{counts}\n0 0 0\n3 0 0 0\n"));
     }
     refused("x.off", "OFF\n1 1 0\n0 0 0\n18446744073709551615 0 0\n");
     let mut stl = binary_stl(b"");
     stl[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert!(matches!(refused("x.stl", &stl).fault, Fault::Truncated { .. }));
+    assert!(matches!(
+        refused("x.stl", &stl).fault,
+        Fault::Truncated { .. }
+    ));
     stl[80..84].copy_from_slice(&0_u32.to_le_bytes());
-    assert!(matches!(refused("x.stl", &stl).fault, Fault::NoFaces { .. }));
+    assert!(matches!(
+        refused("x.stl", &stl).fault,
+        Fault::NoFaces { .. }
+    ));
     stl[80..84].copy_from_slice(&11_u32.to_le_bytes());
-    assert_eq!(good("x.stl", &stl).warnings[0].notice, Notice::TrailingBytes { count: 50 });
+    assert_eq!(
+        good("x.stl", &stl).warnings[0].notice,
+        Notice::TrailingBytes { count: 50 }
+    );
 }
 
 #[test]
@@ -574,7 +791,11 @@ fn stl_text_that_ends_early_is_refused() {
     let model = good("x.stl", format!("{text}\x1A"));
     assert_eq!(model.warnings[0].notice, Notice::TrailingBytes { count: 1 });
     let error = refused("x.stl", text.replacen("endloop", "endlop", 1));
-    assert_message(&error, "x.stl:7: ", "`vertex` or `endloop` expected, `endlop` found");
+    assert_message(
+        &error,
+        "x.stl:7: ",
+        "`vertex` or `endloop` expected, `endlop` found",
+    );
 }
 
 #[test]
@@ -592,7 +813,8 @@ fn soup_of_points(points: &[DVec3]) -> Mesh {
     for (i, &point) in points.iter().enumerate() {
         let far = 1e6 * (1 + i) as f64;
         let first = soup.positions.len() as u32;
-        soup.positions.extend([point, dvec3(far, 2e6, 0.0), dvec3(far, 0.0, 2e6)]);
+        soup.positions
+            .extend([point, dvec3(far, 2e6, 0.0), dvec3(far, 0.0, 2e6)]);
         soup.push_face(&[first, first + 1, first + 2]);
     }
     Mesh::new(soup).expect("finite").0
@@ -600,7 +822,9 @@ fn soup_of_points(points: &[DVec3]) -> Mesh {
 
 #[test]
 fn near_vertices_become_the_first_of_them_over_chains_too() {
-    let chain: Vec<_> = (0..10).map(|i| dvec3(f64::from(i) * 0.75, 0.0, 0.0)).collect();
+    let chain: Vec<_> = (0..10)
+        .map(|i| dvec3(f64::from(i) * 0.75, 0.0, 0.0))
+        .collect();
     let count = |points: &[DVec3], distance| {
         let mesh = soup_of_points(points);
         let before = mesh.positions().len();
@@ -614,7 +838,14 @@ fn near_vertices_become_the_first_of_them_over_chains_too() {
     assert_eq!(count(&chain, 0.0).1, 0);
     let reversed: Vec<_> = chain.iter().rev().copied().collect();
     assert_eq!(count(&reversed, 0.76).0.positions()[0], chain[9]);
-    assert_eq!(count(&chain.iter().map(|p| p * 1e-200).collect::<Vec<_>>(), 0.76e-200).1, 9);
+    assert_eq!(
+        count(
+            &chain.iter().map(|p| p * 1e-200).collect::<Vec<_>>(),
+            0.76e-200
+        )
+        .1,
+        9
+    );
     let huge: Vec<_> = chain.iter().map(|p| p * 1e300).collect();
     let (_, repairs) = soup_of_points(&huge).weld(0.76e300).expect("welds");
     // The far corners, which are small beside this distance, join as well.
@@ -669,8 +900,14 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         ("x.stl", binary_stl(b"solid x")[..84 + 3 * 50].to_vec()),
         ("x.stl", text_stl(3).into_bytes()),
         ("x.ply", ply_cube("ascii", "uchar int vertex_indices")),
-        ("x.ply", ply_cube("binary_little_endian", "uchar int vertex_indices")),
-        ("x.ply", ply_cube("binary_big_endian", "uint uchar vertex_index")),
+        (
+            "x.ply",
+            ply_cube("binary_little_endian", "uchar int vertex_indices"),
+        ),
+        (
+            "x.ply",
+            ply_cube("binary_big_endian", "uint uchar vertex_index"),
+        ),
     ]
 }
 

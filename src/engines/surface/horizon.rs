@@ -764,7 +764,7 @@ impl Horizon {
         } else {
             f64::INFINITY
         };
-        if !(error < CROSSING_PRECISION * plane.du / (6.0 * UNIT)) {
+        if error.is_nan() || error >= CROSSING_PRECISION * plane.reach() / 6.0 {
             self.work.exact += 1;
             let points = |ids: [u32; 2]| ids.map(|id| plane.point(id));
             u = plane.sight.crossing_u(points([s.line.a, s.line.b]), points([line.a, line.b]));

@@ -210,7 +210,7 @@ impl Sight {
 
     fn exact<const N: usize>(&self, points: [DVec3; N]) -> [Triple; N] {
         let mut triples = self.scaled(&points, &[]).0.into_iter();
-        std::array::from_fn(|_| triples.next().unwrap_or_else(|| [IBig::ZERO; 3]))
+        std::array::from_fn(|_| triples.next().unwrap_or([IBig::ZERO; 3]))
     }
 
     /// Exact triples of points and places in one scale, and the power of two of the unit of u in
