@@ -23,6 +23,10 @@
 
 pub mod read;
 
+pub mod formula;
+
+pub mod surface;
+
 pub mod mesh;
 
 pub mod arrange;

@@ -82,7 +82,7 @@ struct ModelArgs {
 
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
-struct CameraArgs {
+pub(super) struct CameraArgs {
     /// Where the observer stands
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     eye: Option<DVec3>,
@@ -170,7 +170,7 @@ struct LineArgs {
 
 #[derive(Args)]
 #[command(next_help_heading = "Page")]
-struct PageArgs {
+pub(super) struct PageArgs {
     /// a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
     ///
     /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
@@ -205,7 +205,7 @@ struct PageArgs {
 
 #[derive(Args)]
 #[command(next_help_heading = "Output")]
-struct OutputArgs {
+pub(super) struct OutputArgs {
     /// File to write, its format given by the extension; `-` is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -318,8 +318,13 @@ pub(super) struct Job {
     pub(super) page: PageOptions,
     pub(super) pen_width_mm: f64,
     pub(super) dash: Dash,
+    pub(super) output: OutputOptions,
+}
+
+/// Where the drawing goes, and what is told on the way.
+pub(super) struct OutputOptions {
     /// `None` is standard output.
-    pub(super) output: Option<PathBuf>,
+    pub(super) path: Option<PathBuf>,
     pub(super) format: Format,
     pub(super) svg_element: StrokeElement,
     pub(super) resolution: Resolution,
@@ -343,8 +348,8 @@ impl DrawArgs {
         if model.models.iter().filter(|path| is_dash(path)).count() > 1 {
             return Err("standard input (-) can be read only once".into());
         }
-        let path = output.output.filter(|path| !is_dash(path));
-        let format = output_format(output.format, path.as_deref())?;
+        let output = output.options()?;
+        let json = output.format == Format::Json;
         Ok(Job {
             input_format: model.input_format.map(InputFormat::format),
             arrangement: Arrangement {
@@ -361,21 +366,8 @@ impl DrawArgs {
             page: page.options(),
             pen_width_mm: page.pen_width,
             dash: lines.dash,
-            draw: DrawOptions { apart_by_kind: format == Format::Json, ..lines.options() },
-            output: path,
-            format,
-            svg_element: match output.svg_element {
-                SvgElement::Path => StrokeElement::Path,
-                SvgElement::Polyline => StrokeElement::Polyline,
-            },
-            resolution: match (output.dpi, output.png_width) {
-                (_, Some(width)) => Resolution::WidthPx(width),
-                (Some(dpi), None) => Resolution::Dpi(dpi),
-                (None, None) => Resolution::default(),
-            },
-            threads: output.threads.map(usize::from),
-            stats: output.stats,
-            quiet: output.quiet,
+            draw: DrawOptions { apart_by_kind: json, ..lines.options() },
+            output,
         })
     }
 }
@@ -397,7 +389,7 @@ fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Forma
 }
 
 impl CameraArgs {
-    fn view_source(self) -> ViewSource {
+    pub(super) fn view_source(self) -> ViewSource {
         if let Some(path) = self.camera {
             return ViewSource::File(path);
         }
@@ -446,8 +438,35 @@ impl LineArgs {
     }
 }
 
+impl OutputArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn options(self) -> Result<OutputOptions, String> {
+        let path = self.output.filter(|path| !is_dash(path));
+        Ok(OutputOptions {
+            format: output_format(self.format, path.as_deref())?,
+            path,
+            svg_element: match self.svg_element {
+                SvgElement::Path => StrokeElement::Path,
+                SvgElement::Polyline => StrokeElement::Polyline,
+            },
+            resolution: match (self.dpi, self.png_width) {
+                (_, Some(width)) => Resolution::WidthPx(width),
+                (Some(dpi), None) => Resolution::Dpi(dpi),
+                (None, None) => Resolution::default(),
+            },
+            threads: self.threads.map(usize::from),
+            stats: self.stats,
+            quiet: self.quiet,
+        })
+    }
+}
+
 impl PageArgs {
-    fn options(&self) -> PageOptions {
+    pub(super) fn pen_width_mm(&self) -> f64 {
+        self.pen_width
+    }
+
+    pub(super) fn options(&self) -> PageOptions {
         let unit_mm = match self.unit {
             LengthUnit::Mm => 1.0,
             LengthUnit::Cm => 10.0,

@@ -18,23 +18,23 @@ use hiddenline::view::Camera;
 use hiddenline::writers::png::PngError;
 use hiddenline::writers::{Format, json, png, svg};
 
-use super::args::{Job, ViewSource};
+use super::args::{Job, OutputOptions, ViewSource};
 use super::progress::Progress;
 use super::{messages, output};
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
-    if job.output.is_none() && job.format.is_binary() && io::stdout().is_terminal() {
+    if job.output.path.is_none() && job.output.format.is_binary() && io::stdout().is_terminal() {
         return Err("a picture is not for the terminal; give -o FILE".into());
     }
-    if let Some(threads) = job.threads {
+    if let Some(threads) = job.output.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
     let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
     let mut seconds = stats.seconds;
 
-    let progress = Progress::new(job.quiet);
+    let progress = Progress::new(job.output.quiet);
     progress.stage("reading");
     let (mesh, notes) = timed(&mut seconds.read, || read_models(job))?;
     let bounds = mesh.bounds().unwrap_or_default();
@@ -59,17 +59,17 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let (page, placed) = timed(&mut write_seconds, || -> Result<_, Box<dyn Error>> {
         let page = Page::new(&drawing, &camera, &job.page)?;
         let placed = page.plot(&drawing, plot_options(job));
-        write(job, &drawing, &camera, &page, &placed.plot)?;
+        write(&job.output, &drawing, &camera, &page, &placed.plot)?;
         Ok((page, placed))
     })?;
     drop(progress);
     stats.seconds.write += write_seconds;
     stats.seconds.total = start.elapsed().as_secs_f64();
     stats.peak_bytes = peak_bytes();
-    if !job.quiet {
-        report(job, &notes, &page, &placed);
+    if !job.output.quiet {
+        report(&job.output, &notes, &page, &placed);
     }
-    if job.stats {
+    if job.output.stats {
         messages::plain(serde_json::to_string(&stats)?);
     }
     Ok(())
@@ -77,9 +77,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 
 /// What reading has to tell, for when all went well.
 #[derive(Default)]
-struct Notes {
-    warnings: Vec<String>,
-    summary: String,
+pub(super) struct Notes {
+    pub(super) warnings: Vec<String>,
+    pub(super) summary: String,
 }
 
 fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
@@ -120,7 +120,7 @@ fn described(repairs: Repairs) -> String {
     .collect()
 }
 
-fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
+pub(super) fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
     let failed = |error: &dyn Error| format!("{}: {error}", path.display());
     let text = if path.as_os_str() == "-" {
         io::read_to_string(io::stdin().lock())
@@ -163,7 +163,7 @@ fn title(job: &Job) -> String {
 
 /// The command as typed, but for what does not change the drawing: the same drawing has the same
 /// bytes, wherever it is written to and however many threads made it.
-fn source(arguments: impl Iterator<Item = OsString>) -> String {
+pub(super) fn source(arguments: impl Iterator<Item = OsString>) -> String {
     let mut command = "hiddenline".to_owned();
     let mut arguments = arguments.map(|argument| argument.to_string_lossy().into_owned());
     while let Some(argument) = arguments.next() {
@@ -194,28 +194,33 @@ fn quoted(argument: &str) -> String {
     }
 }
 
-fn write(
-    job: &Job,
+pub(super) fn write(
+    options: &OutputOptions,
     drawing: &Drawing,
     camera: &Camera,
     page: &Page,
     plot: &Plot,
 ) -> Result<(), Box<dyn Error>> {
     let write = |out: &mut dyn Write| -> Result<(), PngError> {
-        match job.format {
-            Format::Svg => Ok(svg::write(plot, job.svg_element, out)?),
+        match options.format {
+            Format::Svg => Ok(svg::write(plot, options.svg_element, out)?),
             Format::Json => Ok(json::write(drawing, camera, page.page_from_image, out)?),
-            Format::Png => png::write(plot, job.resolution, out),
+            Format::Png => png::write(plot, options.resolution, out),
         }
     };
-    match &job.output {
+    match &options.path {
         None => Ok(output::write_to_stdout(write)?),
         Some(path) => output::write_to_file(path, write)
             .map_err(|error| format!("cannot write {}: {error}", path.display()).into()),
     }
 }
 
-fn report(job: &Job, notes: &Notes, page: &Page, PlacedPlot { plot, cropped }: &PlacedPlot) {
+pub(super) fn report(
+    options: &OutputOptions,
+    notes: &Notes,
+    page: &Page,
+    PlacedPlot { plot, cropped }: &PlacedPlot,
+) {
     for warning in &notes.warnings {
         messages::warning(warning);
     }
@@ -223,10 +228,10 @@ fn report(job: &Job, notes: &Notes, page: &Page, PlacedPlot { plot, cropped }: &
     if plot.layers.iter().all(|layer| layer.lines.is_empty()) {
         messages::warning("the drawing is empty: nothing is in view");
     }
-    if *cropped && job.format != Format::Json {
+    if *cropped && options.format != Format::Json {
         messages::warning("lines were cut off at the margins");
     }
-    let name = job.output.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
+    let name = options.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
     let pens: String = plot
         .layers
         .iter()

@@ -5,6 +5,7 @@ mod draw;
 mod messages;
 mod output;
 mod progress;
+mod surface;
 mod values;
 
 use std::error::Error;
@@ -16,6 +17,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
 use self::args::DrawArgs;
+use self::surface::SurfaceArgs;
 
 /// Exact hidden-line drawings of 3D models, for print and pen plotters
 #[derive(Parser)]
@@ -29,6 +31,8 @@ struct Cli {
 enum Command {
     /// Draw models as lines, the hidden ones removed
     Draw(Box<DrawArgs>),
+    /// Draw a surface z = f(x, y) by its grid lines, the hidden parts removed
+    Surface(Box<SurfaceArgs>),
     /// Print a script that completes commands in a shell
     Completions {
         /// The shell
@@ -47,6 +51,10 @@ pub(crate) fn run() -> ExitCode {
         Command::Draw(args) => match args.job() {
             Ok(job) => draw::run(&job),
             Err(message) => bad_usage("draw", message),
+        },
+        Command::Surface(args) => match args.job() {
+            Ok(job) => surface::run(&job),
+            Err(message) => bad_usage("surface", message),
         },
         Command::Completions { shell } => {
             let mut script = Vec::new();

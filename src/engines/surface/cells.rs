@@ -1,0 +1,302 @@
+//! The cells of one part of a grid, from the eye outwards.
+//!
+//! ```text
+//!   left ─────── far        The part is reflected so that the eye is at the lower left:
+//!    │  ╲     ╱   │         columns and rows are counted away from it. The diagonal runs
+//!    │    ╲ ╱     │         from near to far or from left to right. u grows from left over
+//!    │    ╱ ╲     │         near and far to right.
+//!   near ────── right
+//! ```
+
+use std::cmp::Ordering;
+
+use super::Order;
+use super::horizon::{Samples, Vertex};
+use super::strip::Strip;
+use crate::surface::Grid;
+
+impl Samples for Grid {
+    fn point(&self, sample: u32) -> glam::DVec3 {
+        Grid::point(self, sample)
+    }
+}
+
+/// One part of the domain: the lines of the grid by their distance from the eye.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part {
+    /// Columns of the grid, the nearest first; the first may lie behind the eye's x.
+    pub(super) columns: Vec<u32>,
+    /// Rows of the grid, the nearest first; the first may lie behind the eye's y.
+    pub(super) rows: Vec<u32>,
+    /// Signs that reflect the part.
+    pub(super) sx: f64,
+    /// See `sx`.
+    pub(super) sy: f64,
+    /// Where the first column lies.
+    pub(super) first_column: First,
+    /// Where the first row lies.
+    pub(super) first_row: First,
+    /// Edges along y are all radial (orthographic).
+    pub(super) radial_columns: bool,
+    /// Edges along x are all radial (orthographic).
+    pub(super) radial_rows: bool,
+}
+
+/// Where the nearest line of a part lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum First {
+    /// Beyond the eye: the edges along it are the nearest of the part.
+    Beyond,
+    /// In the vertical plane of the eye, on the border of the domain.
+    RadialOnBorder,
+    /// In the vertical plane of the eye, inside the domain.
+    RadialInside,
+    /// Behind the eye: its cells are cut.
+    Behind,
+}
+
+impl Part {
+    /// The sample at a column and row counted from the eye.
+    pub(super) fn sample(&self, grid: &Grid, c: usize, r: usize) -> u32 {
+        self.rows[r] * grid.xs().len() as u32 + self.columns[c]
+    }
+
+    fn cells(&self) -> (usize, usize) {
+        (self.columns.len() - 1, self.rows.len() - 1)
+    }
+
+    /// The number of the edge along x from sample (c, r) away from the eye.
+    pub(super) fn x_edge(&self, grid: &Grid, c: usize, r: usize) -> u32 {
+        let i = self.columns[c].min(self.columns[c + 1]);
+        self.rows[r] * (grid.xs().len() as u32 - 1) + i
+    }
+
+    /// The number of the edge along y from sample (c, r) away from the eye.
+    pub(super) fn y_edge(&self, grid: &Grid, c: usize, r: usize) -> u32 {
+        let (nx, ny) = (grid.xs().len() as u32, grid.ys().len() as u32);
+        let j = self.rows[r].min(self.rows[r + 1]);
+        ny * (nx - 1) + self.columns[c] * (ny - 1) + j
+    }
+
+    /// Visits every cell that meets the strip and records what is visible in it.
+    pub(super) fn sweep(&self, grid: &Grid, strip: &mut Strip<Grid>, order: Order) {
+        let mut walk = Walk { part: self, grid, strip };
+        match order {
+            Order::Rows => walk.rows(),
+            Order::Diagonals => walk.diagonals(),
+        }
+    }
+}
+
+/// The first column of a range from which on `holds` is true, or the end of the range.
+fn first_column(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
+}
+
+struct Walk<'a, 'b, 'c> {
+    part: &'a Part,
+    grid: &'a Grid,
+    strip: &'b mut Strip<'c, Grid>,
+}
+
+/// The corners of a cell.
+struct Corners {
+    near: Vertex,
+    right: Vertex,
+    left: Vertex,
+    far: Vertex,
+}
+
+impl Walk<'_, '_, '_> {
+    fn id(&self, c: usize, r: usize) -> u32 {
+        self.part.sample(self.grid, c, r)
+    }
+
+    fn rows(&mut self) {
+        let (n_columns, n_rows) = self.part.cells();
+        let (mut near, mut far) = (Vec::new(), Vec::new());
+        let first = usize::from(self.part.first_column == First::Behind);
+        // Rounded u can only make the range a little too wide; segments are cut exactly.
+        let margin = 4.0 * self.strip.plane.du;
+        let (from, to) = (self.strip.from - margin, self.strip.to + margin);
+        for r in 0..n_rows {
+            if first == 1 {
+                self.cut_cell(0, r);
+            }
+            if r == 0 && self.part.first_row == First::Behind {
+                (first..n_columns).for_each(|c| self.cut_cell(c, r));
+                continue;
+            }
+            let vertex = |c: usize, r: usize| self.strip.plane.vertex(self.id(c, r));
+            let begin = first_column(first, n_columns, |c| vertex(c + 1, r).u >= from);
+            let end = first_column(begin, n_columns, |c| vertex(c, r + 1).u > to);
+            near.clear();
+            far.clear();
+            near.extend((begin..=end).map(|c| vertex(c, r)));
+            far.extend((begin..=end).map(|c| vertex(c, r + 1)));
+            for (k, c) in (begin..end).enumerate() {
+                let corners =
+                    Corners { near: near[k], right: near[k + 1], left: far[k], far: far[k + 1] };
+                self.cell(c, r, &corners);
+            }
+        }
+    }
+
+    fn diagonals(&mut self) {
+        let (n_columns, n_rows) = self.part.cells();
+        for level in 0..n_columns + n_rows - 1 {
+            for c in level.saturating_sub(n_rows - 1)..n_columns.min(level + 1) {
+                let r = level - c;
+                if (c == 0 && self.part.first_column == First::Behind)
+                    || (r == 0 && self.part.first_row == First::Behind)
+                {
+                    self.cut_cell(c, r);
+                    continue;
+                }
+                let vertex = |c, r| self.strip.plane.vertex(self.id(c, r));
+                let corners = Corners {
+                    near: vertex(c, r),
+                    right: vertex(c + 1, r),
+                    left: vertex(c, r + 1),
+                    far: vertex(c + 1, r + 1),
+                };
+                let margin = 4.0 * self.strip.plane.du;
+                if corners.right.u >= self.strip.from - margin
+                    && corners.left.u <= self.strip.to + margin
+                {
+                    self.cell(c, r, &corners);
+                }
+            }
+        }
+    }
+
+    /// Whether the diagonal of the cells runs from near to far.
+    fn near_to_far(&self) -> bool {
+        self.part.sx * self.part.sy > 0.0
+    }
+
+    /// A cell wholly inside the part.
+    fn cell(&mut self, c: usize, r: usize, corners: &Corners) {
+        let Corners { near, right, left, far } = *corners;
+        let part = self.part;
+        if (c == 0 && part.first_column != First::Beyond)
+            || (r == 0 && part.first_row != First::Beyond)
+            || part.radial_columns
+            || part.radial_rows
+        {
+            self.radial_edges(c, r, corners);
+        }
+        if c == 0 && part.first_column == First::Beyond && !part.radial_columns {
+            self.draw(left, near, part.y_edge(self.grid, c, r));
+        }
+        if r == 0 && part.first_row == First::Beyond && !part.radial_rows {
+            self.draw(near, right, part.x_edge(self.grid, c, r));
+        }
+        let diagonal = if self.near_to_far() { (near, far) } else { (left, right) };
+        let diagonal = match self.strip.plane.order(diagonal.0, diagonal.1) {
+            Ordering::Less => self.strip.segment(diagonal.0, diagonal.1),
+            Ordering::Equal => None,
+            Ordering::Greater => self.strip.segment(diagonal.1, diagonal.0),
+        };
+        if let Some(diagonal) = diagonal {
+            self.strip.hide(&diagonal);
+        }
+        if !part.radial_rows {
+            self.draw(left, far, part.x_edge(self.grid, c, r + 1));
+        }
+        if !part.radial_columns {
+            self.draw(far, right, part.y_edge(self.grid, c + 1, r));
+        }
+    }
+
+    fn draw(&mut self, a: Vertex, b: Vertex, edge: u32) {
+        if let Some(segment) = self.strip.segment(a, b) {
+            self.strip.draw(&segment, edge);
+        }
+    }
+
+    /// Tests the radial edges of a cell before the cell hides anything. An edge on the border of the
+    /// domain has nothing beside it on the outer side, so it is wholly visible.
+    fn radial_edges(&mut self, c: usize, r: usize, corners: &Corners) {
+        let Corners { near, right, left, far } = *corners;
+        let (part, grid, cells) = (self.part, self.grid, self.part.cells());
+        let strip = &mut *self.strip;
+        let mut test = |(a, b): (Vertex, Vertex), edge, right_side, on_border| {
+            if on_border {
+                strip.draw_whole(edge);
+            } else {
+                strip.draw_radial((a.id, b.id), edge, right_side, None);
+            }
+        };
+        if part.radial_columns {
+            test((near, left), part.y_edge(grid, c, r), true, c == 0);
+            test((right, far), part.y_edge(grid, c + 1, r), false, c + 1 == cells.0);
+        } else if c == 0 && matches!(part.first_column, First::RadialOnBorder | First::RadialInside)
+        {
+            let on_border = part.first_column == First::RadialOnBorder;
+            test((near, left), part.y_edge(grid, c, r), true, on_border);
+        }
+        if part.radial_rows {
+            test((near, right), part.x_edge(grid, c, r), false, r == 0);
+            test((left, far), part.x_edge(grid, c, r + 1), true, r + 1 == cells.1);
+        } else if r == 0 && matches!(part.first_row, First::RadialOnBorder | First::RadialInside) {
+            let on_border = part.first_row == First::RadialOnBorder;
+            test((near, right), part.x_edge(grid, c, r), false, on_border);
+        }
+    }
+
+    /// A cell that the border of the part cuts.
+    fn cut_cell(&mut self, c: usize, r: usize) {
+        let (part, grid) = (self.part, self.grid);
+        let [near, right, left, far] =
+            [(c, r), (c + 1, r), (c, r + 1), (c + 1, r + 1)].map(|(c, r)| self.id(c, r));
+        let strip = &mut *self.strip;
+        let centre = strip.plane.sight.centre;
+        if c == 0 && part.first_column != First::Behind {
+            let edge = part.y_edge(grid, c, r);
+            let (from, to) = (grid.point(near).y, grid.point(left).y);
+            match part.first_column {
+                First::RadialOnBorder => strip.draw_whole(edge),
+                First::RadialInside => {
+                    strip.draw_radial(
+                        (near, left),
+                        edge,
+                        true,
+                        Some((centre.y - from) / (to - from)),
+                    );
+                }
+                _ => strip.draw_clipped(left, near, edge),
+            }
+        }
+        if r == 0 && part.first_row != First::Behind {
+            let edge = part.x_edge(grid, c, r);
+            let (from, to) = (grid.point(near).x, grid.point(right).x);
+            match part.first_row {
+                First::RadialOnBorder => strip.draw_whole(edge),
+                First::RadialInside => {
+                    strip.draw_radial(
+                        (near, right),
+                        edge,
+                        false,
+                        Some((centre.x - from) / (to - from)),
+                    );
+                }
+                _ => strip.draw_clipped(near, right, edge),
+            }
+        }
+        let diagonal = if part.sx * part.sy > 0.0 { (near, far) } else { (left, right) };
+        if let Some(diagonal) = strip.clipped(diagonal.0, diagonal.1) {
+            strip.hide(&diagonal);
+        }
+        strip.draw_clipped(left, far, part.x_edge(grid, c, r + 1));
+        strip.draw_clipped(far, right, part.y_edge(grid, c + 1, r));
+    }
+}

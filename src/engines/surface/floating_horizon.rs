@@ -1,0 +1,134 @@
+//! Floating horizon (Wright 1973): one family of grid lines, hidden by its own nearer lines.
+//!
+//! Lines are taken nearest first. A point of a line is visible when its height in the auxiliary
+//! vertical plane (see [`super::max_min`]) is at least the highest, or at most the lowest, of all
+//! nearer lines of the family at the same u. Nothing else hides: the surface between the lines is
+//! taken to be transparent, so the picture of a rough surface differs from that of [`super::max_min`],
+//! and two families drawn so do not fit together.
+//!
+//! ```text
+//!   v ▲   ╱╲      third line: seen above the upper and below the lower horizon
+//!     │ ─╱┄┄╲──   second
+//!     │ ╱    ╲    first
+//!     └─────────► u
+//! ```
+//!
+//! Differs from the textbook method in that the horizons are exact piecewise linear functions, not
+//! arrays of pixels; a line is cut where it crosses a horizon, not judged by its ends; and the
+//! domain is split at the eye's x and y, so that the eye may stand over it. O(samples + crossings).
+
+use std::sync::atomic::AtomicU8;
+
+use rayon::prelude::*;
+
+use super::SurfaceError;
+use super::Work;
+use super::cells::{First, Part};
+use super::horizon::Plane;
+use super::max_min::{bounds, parts};
+use super::pieces::{GridPieces, HIDDEN, UPPER};
+use super::plan_predicates::Sight;
+use super::strip::Strip;
+use crate::surface::{Grid, Holes};
+use crate::view::{Camera, Projection};
+
+/// A family of grid lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// Lines along x: y is constant.
+    AlongX,
+    /// Lines along y: x is constant.
+    AlongY,
+}
+
+/// Finds the visible parts of one family of lines; the edges of the other count as hidden.
+///
+/// A line in the vertical plane of the eye has no nearer line at its u, so it is visible, and so is
+/// everything in a vertical view.
+///
+/// # Errors
+/// Holes.
+pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces, SurfaceError> {
+    if grid.holes() != Holes::None {
+        return Err(SurfaceError::Holes);
+    }
+    let (nx, ny) = (grid.xs().len(), grid.ys().len());
+    let (n_x_edges, n_y_edges) = (ny * (nx - 1), nx * (ny - 1));
+    let forward = camera.forward();
+    let perspective = matches!(camera.projection(), Projection::Perspective { .. });
+    if !perspective && forward.x == 0.0 && forward.y == 0.0 {
+        let (x_seen, y_seen) =
+            if family == Family::AlongX { (UPPER, HIDDEN) } else { (HIDDEN, UPPER) };
+        let status = [vec![x_seen; n_x_edges], vec![y_seen; n_y_edges]].concat();
+        return Ok(GridPieces::join(nx, ny, status, Vec::new()));
+    }
+    let status: Vec<AtomicU8> = (0..n_x_edges + n_y_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
+    let (low, high) = bounds(grid);
+    let centre = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
+    let size = (high - centre).abs().max((low - centre).abs());
+    let done: Vec<_> = parts(grid, camera)
+        .par_iter()
+        .map(|part| {
+            let sight = Sight::new(camera, part.sx, part.sy, centre);
+            let plane = Plane::new(grid, sight, size);
+            let reach = 4.0 * plane.reach();
+            let range = if perspective { (-1.0, 1.0) } else { (-reach, reach) };
+            let mut strip = Strip::new(plane, range, (true, true), &status);
+            match family {
+                Family::AlongX => lines_along_x(part, grid, &mut strip),
+                Family::AlongY => lines_along_y(part, grid, &mut strip),
+            }
+            (strip.work(), strip.found)
+        })
+        .collect();
+    let mut work = Work::default();
+    let mut found = Vec::new();
+    for (part_work, part_found) in done {
+        work += part_work;
+        found.extend(part_found);
+    }
+    let status = status.into_iter().map(AtomicU8::into_inner).collect();
+    let mut pieces = GridPieces::join(nx, ny, status, found);
+    pieces.work = work;
+    Ok(pieces)
+}
+
+fn lines_along_x(part: &Part, grid: &Grid, strip: &mut Strip<Grid>) {
+    for r in usize::from(part.first_row == First::Behind)..part.rows.len() {
+        let radial = part.radial_rows || (r == 0 && is_radial(part.first_row));
+        for c in 0..part.columns.len() - 1 {
+            let edge = part.x_edge(grid, c, r);
+            let (left, right) = (part.sample(grid, c, r), part.sample(grid, c + 1, r));
+            // u grows away from the eye's x.
+            draw(strip, (left, right), edge, radial, c == 0 && part.first_column == First::Behind);
+        }
+    }
+}
+
+fn lines_along_y(part: &Part, grid: &Grid, strip: &mut Strip<Grid>) {
+    for c in usize::from(part.first_column == First::Behind)..part.columns.len() {
+        let radial = part.radial_columns || (c == 0 && is_radial(part.first_column));
+        for r in 0..part.rows.len() - 1 {
+            let edge = part.y_edge(grid, c, r);
+            let (left, right) = (part.sample(grid, c, r + 1), part.sample(grid, c, r));
+            draw(strip, (left, right), edge, radial, r == 0 && part.first_row == First::Behind);
+        }
+    }
+}
+
+fn is_radial(first: First) -> bool {
+    matches!(first, First::RadialOnBorder | First::RadialInside)
+}
+
+fn draw(strip: &mut Strip<Grid>, (left, right): (u32, u32), edge: u32, radial: bool, cut: bool) {
+    if radial {
+        strip.draw_whole(edge);
+    } else if cut {
+        strip.draw_clipped(left, right, edge);
+    } else {
+        let (left, right) = (strip.plane.vertex(left), strip.plane.vertex(right));
+        if let Some(segment) = strip.segment(left, right) {
+            strip.draw(&segment, edge);
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Max-Min patches (Vega-Páez, Ortega & Pulido 2008): both families of grid lines, hidden by the
+//! surface between them.
+//!
+//! Two points of a surface z = f(x, y) can only hide each other when they lie in one vertical plane
+//! through the eye, the nearer one the nearer in plan too. So cells are visited from the eye
+//! outwards, and in a picture on a *vertical* plane the region covered so far lies between two
+//! functions of u, the lowest and the highest line seen: the horizons. What is at or beyond either
+//! is visible.
+//!
+//! ```text
+//!          ┌────┬────┬────┐      the domain is split at the eye's x and y into up to four parts;
+//!          │ -+ ┆ ++ │    │      in each, with dx, dy ≥ 0 after reflection,
+//!          ├────┼┄┄┄┄┼────┤         u = (dx − dy)/(dx + dy)   to the right
+//!          │ -- ● +- │    │         v = dz/(dx + dy)          upwards
+//!          └────┴────┴────┘      ● the eye's foot
+//! ```
+//!
+//! For each cell: the diagonal along which it is cut hides; then the two far edges are tested and
+//! hide in turn. An edge in the vertical plane of the eye is tested beside its plane, from the cells
+//! on both sides, and hides nothing.
+//!
+//! Differs from the paper in these points. Visible is at or beyond a horizon, not on it. An edge is
+//! cut wherever it crosses a horizon, not judged by its ends. The auxiliary picture plane is vertical,
+//! because on a tilted one the region covered in a column need not be an interval. The diagonal
+//! hides. The main edges are tested like all others. Every comparison is exact.
+//!
+//! The order of rows keeps the coherence of neighboring cells: each is added to the horizon next to
+//! the one before. O(samples + crossings); memory beside the result is one row and two horizons for
+//! each strip.
+
+use std::cmp::Ordering;
+use std::sync::atomic::AtomicU8;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::cells::{First, Part};
+use super::horizon::Plane;
+use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
+use super::plan_predicates::{Sight, over_plane};
+use super::strip::Strip;
+use super::{Order, SurfaceError, Work};
+use crate::surface::{Grid, Holes};
+use crate::view::{Camera, Projection};
+
+/// A part is split into strips of about this many cells, so that several threads share the work.
+/// The number depends on the surface only, so the drawing does not depend on the threads.
+const CELLS_PER_STRIP: usize = 30_000;
+
+/// Most strips of one part.
+const MAX_STRIPS: usize = 16;
+
+/// Finds the visible parts of all grid lines of `grid`.
+///
+/// The surface is the triangulated grid; diagonals hide and are not drawn. The camera may stand
+/// anywhere off the surface: over the domain, beside it, below it, far away. What lies behind the
+/// eye is found too: cut it at the near plane before drawing.
+///
+/// # Errors
+/// Holes, or an eye on the surface.
+pub fn solve(grid: &Grid, camera: &Camera, order: Order) -> Result<GridPieces, SurfaceError> {
+    solve_in_strips(grid, camera, order, CELLS_PER_STRIP)
+}
+
+/// As [`solve`], with strips of about `cells_per_strip` cells; the drawing is the same up to the
+/// rounding of where pieces end.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_in_strips(
+    grid: &Grid,
+    camera: &Camera,
+    order: Order,
+    cells_per_strip: usize,
+) -> Result<GridPieces, SurfaceError> {
+    if grid.holes() != Holes::None {
+        return Err(SurfaceError::Holes);
+    }
+    let (nx, ny) = (grid.xs().len(), grid.ys().len());
+    let n_edges = ny * (nx - 1) + nx * (ny - 1);
+    let forward = camera.forward();
+    let perspective = matches!(camera.projection(), Projection::Perspective { .. });
+    if !perspective && forward.x == 0.0 && forward.y == 0.0 {
+        let seen = if forward.z < 0.0 { UPPER } else { LOWER };
+        return Ok(GridPieces::join(nx, ny, vec![seen; n_edges], Vec::new()));
+    }
+    let horizons = if perspective { horizons_at_foot(grid, camera.eye())? } else { (true, true) };
+    let status: Vec<AtomicU8> = (0..n_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
+
+    let (low, high) = bounds(grid);
+    // In orthographic projection only differences matter; a centre in the middle keeps them small.
+    let centre = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
+    let size = (high - centre).abs().max((low - centre).abs());
+    let parts = parts(grid, camera);
+    let tasks: Vec<(&Part, Sight, (f64, f64))> = parts
+        .iter()
+        .flat_map(|part| {
+            let sight = Sight::new(camera, part.sx, part.sy, centre);
+            strips(grid, part, &sight, size, cells_per_strip)
+                .into_iter()
+                .map(move |range| (part, sight, range))
+        })
+        .collect();
+    let done: Vec<_> = tasks
+        .par_iter()
+        .with_max_len(1)
+        .map(|&(part, sight, range)| {
+            let plane = Plane::new(grid, sight, size);
+            let mut strip = Strip::new(plane, range, horizons, &status);
+            part.sweep(grid, &mut strip, order);
+            (strip.work(), strip.found)
+        })
+        .collect();
+
+    let mut work = Work::default();
+    let mut found = Vec::with_capacity(done.iter().map(|(_, found)| found.len()).sum());
+    for (strip_work, strip_found) in done {
+        work += strip_work;
+        found.extend(strip_found);
+    }
+    let status = status.into_iter().map(AtomicU8::into_inner).collect();
+    let mut pieces = GridPieces::join(nx, ny, status, found);
+    pieces.work = work;
+    Ok(pieces)
+}
+
+pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {
+    let (xs, ys) = (grid.xs(), grid.ys());
+    let (low, high) = grid.heights().unwrap_or((0.0, 0.0));
+    (DVec3::new(xs[0], ys[0], low), DVec3::new(xs[xs.len() - 1], ys[ys.len() - 1], high))
+}
+
+/// Which horizons there are, (upper, lower). With the eye over the domain one of them starts at
+/// infinity: nothing is seen from the other side.
+fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), SurfaceError> {
+    let cell = |values: &[f64], at: f64| {
+        let inside = values[0] <= at && at <= values[values.len() - 1];
+        inside.then(|| values[1..values.len() - 1].partition_point(|&value| value <= at))
+    };
+    let (Some(i), Some(j)) = (cell(grid.xs(), eye.x), cell(grid.ys(), eye.y)) else {
+        return Ok((true, true));
+    };
+    let corner = |di, dj| grid.point(((j + dj) * grid.xs().len() + i + di) as u32);
+    let (near, far) = (corner(0, 0), corner(1, 1));
+    let flat = |p: DVec3| robust::Coord { x: p.x, y: p.y };
+    let below_diagonal = robust::orient2d(flat(near), flat(far), flat(eye)) < 0.0;
+    let over = if below_diagonal {
+        over_plane(eye, near, corner(1, 0), far)
+    } else {
+        over_plane(eye, near, far, corner(0, 1))
+    };
+    match over {
+        Ordering::Greater => Ok((true, false)),
+        Ordering::Less => Ok((false, true)),
+        Ordering::Equal => Err(SurfaceError::EyeOnSurface),
+    }
+}
+
+/// The parts of the domain around the eye; in orthographic projection there is one.
+pub(super) fn parts(grid: &Grid, camera: &Camera) -> Vec<Part> {
+    let Projection::Perspective { .. } = camera.projection() else {
+        let forward = camera.forward();
+        let sign = |f: f64| if f < 0.0 { -1.0 } else { 1.0 };
+        let (sx, sy) = (sign(forward.x), sign(forward.y));
+        let away = |n: usize, s: f64| -> Vec<u32> {
+            if s < 0.0 { (0..n as u32).rev().collect() } else { (0..n as u32).collect() }
+        };
+        return vec![Part {
+            columns: away(grid.xs().len(), sx),
+            rows: away(grid.ys().len(), sy),
+            sx,
+            sy,
+            first_column: First::Beyond,
+            first_row: First::Beyond,
+            radial_columns: forward.x == 0.0,
+            radial_rows: forward.y == 0.0,
+        }];
+    };
+    let eye = camera.eye();
+    let mut parts = Vec::new();
+    for (sx, columns) in sides(grid.xs(), eye.x) {
+        for (sy, rows) in sides(grid.ys(), eye.y) {
+            parts.push(Part {
+                columns: columns.0.clone(),
+                rows: rows.0.clone(),
+                sx,
+                sy,
+                first_column: columns.1,
+                first_row: rows.1,
+                radial_columns: false,
+                radial_rows: false,
+            });
+        }
+    }
+    parts
+}
+
+/// The grid's lines on each side of the eye that has cells, the nearest first.
+fn sides(values: &[f64], eye: f64) -> Vec<(f64, (Vec<u32>, First))> {
+    let n = values.len();
+    let mut sides = Vec::new();
+    for sign in [1.0, -1.0] {
+        let index = |k: usize| if sign > 0.0 { k } else { n - 1 - k };
+        let beyond = |k: usize| {
+            (values[index(k)] - eye) * sign > 0.0 || values[index(k)] * sign > eye * sign
+        };
+        let Some(first) = (0..n).find(|&k| beyond(k)) else {
+            continue;
+        };
+        let (start, kind) = match first.checked_sub(1) {
+            None => (0, First::Beyond),
+            Some(k) if values[index(k)] == eye => {
+                (k, if k == 0 { First::RadialOnBorder } else { First::RadialInside })
+            }
+            Some(k) => (k, First::Behind),
+        };
+        if start + 1 < n {
+            sides.push((sign, ((start..n).map(|k| index(k) as u32).collect(), kind)));
+        }
+    }
+    sides
+}
+
+/// Ranges of u of about equal work that make up a part.
+fn strips(
+    grid: &Grid,
+    part: &Part,
+    sight: &Sight,
+    size: DVec3,
+    cells_per_strip: usize,
+) -> Vec<(f64, f64)> {
+    let (low, high) = match sight.forward {
+        None => (-1.0, 1.0),
+        Some(f) => {
+            let reach = 2.0 * (f.x.abs() * size.y + f.y.abs() * size.x) + f64::MIN_POSITIVE;
+            (-reach, reach)
+        }
+    };
+    let cells = part.columns.len() * part.rows.len();
+    let n_strips = (cells / cells_per_strip.max(1)).clamp(1, MAX_STRIPS);
+    let every = |n: usize| (n / 64).max(1);
+    let mut us: Vec<f64> = Vec::new();
+    for &row in part.rows.iter().skip(1).step_by(every(part.rows.len())) {
+        for &column in part.columns.iter().skip(1).step_by(every(part.columns.len())) {
+            let [hu, hw, _] = sight.rounded(grid.point(row * grid.xs().len() as u32 + column));
+            us.push(hu / hw);
+        }
+    }
+    us.sort_unstable_by(f64::total_cmp);
+    let mut borders = vec![low];
+    for k in 1..n_strips {
+        let u = us[k * us.len() / n_strips];
+        if u > borders[borders.len() - 1] && u < high {
+            borders.push(u);
+        }
+    }
+    borders.push(high);
+    borders.windows(2).map(|pair| (pair[0], pair[1])).collect()
+}

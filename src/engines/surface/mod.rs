@@ -1,0 +1,42 @@
+//! Engines for function surfaces z = f(x, y), each with its own definition of what hides.
+//!
+//! | engine | draws | hides by | cost |
+//! |---|---|---|---|
+//! | [`floating_horizon`] | grid lines | the nearer lines of the same family | samples + crossings |
+//! | [`max_min`] | both families of grid lines | the triangulated surface | samples + crossings |
+
+mod cells;
+pub mod floating_horizon;
+mod horizon;
+mod lines;
+pub mod max_min;
+mod pieces;
+mod plan_predicates;
+mod strip;
+
+pub use horizon::Work;
+pub use lines::{Lines, strokes};
+pub use pieces::{GridPieces, Piece, Side};
+
+use thiserror::Error;
+
+/// In which order cells are visited; both give the same drawing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Order {
+    /// Row after row, away from the eye.
+    #[default]
+    Rows,
+    /// Diagonal after diagonal, away from the corner nearest to the eye (Cantor's order).
+    Diagonals,
+}
+
+/// Why a surface cannot be drawn by the engines of this folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum SurfaceError {
+    /// The eye lies on the surface.
+    #[error("the eye lies on the surface; move it up or down")]
+    EyeOnSurface,
+    /// Some samples have no height: one may look through the hole.
+    #[error("the surface has holes; use a mesh engine")]
+    Holes,
+}

@@ -1,0 +1,133 @@
+//! What is visible of the lines of a grid.
+
+/// Which side of the surface is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// Beyond the upper horizon: from above.
+    Upper,
+    /// Beyond the lower horizon: from below.
+    Lower,
+}
+
+/// A visible part of an edge between two neighboring samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// The edge, see [`GridPieces`].
+    pub edge: u32,
+    /// Where it begins: 0 at the end with the smaller index, 1 at the other.
+    pub t0: f64,
+    /// Where it ends, greater than `t0`.
+    pub t1: f64,
+    /// Which side is seen.
+    pub side: Side,
+}
+
+pub(super) const HIDDEN: u8 = 0;
+pub(super) const UPPER: u8 = 1;
+pub(super) const LOWER: u8 = 2;
+pub(super) const PARTLY: u8 = 3;
+
+/// Visible parts of all edges of a grid.
+///
+/// Edges along x come first, row by row: (i,j)–(i+1,j) is number `j·(nx−1) + i`. Then those along
+/// y, column by column: (i,j)–(i,j+1) is number `ny·(nx−1) + i·(ny−1) + j`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridPieces {
+    pub(super) nx: usize,
+    pub(super) ny: usize,
+    pub(super) status: Vec<u8>,
+    /// Of partly visible edges only, by edge and then from t = 0 to 1; disjoint.
+    pub(super) pieces: Vec<Piece>,
+    pub(super) work: super::Work,
+}
+
+impl GridPieces {
+    /// Number of samples along x and y.
+    pub fn size(&self) -> (usize, usize) {
+        (self.nx, self.ny)
+    }
+
+    /// Number of edges.
+    pub fn n_edges(&self) -> usize {
+        self.status.len()
+    }
+
+    /// How much work it took.
+    pub fn work(&self) -> super::Work {
+        self.work
+    }
+
+    /// Samples at the ends of an edge.
+    pub fn ends(&self, edge: u32) -> [u32; 2] {
+        let (nx, ny, edge) = (self.nx, self.ny, edge as usize);
+        let along_x = ny * (nx - 1);
+        if edge < along_x {
+            let (j, i) = (edge / (nx - 1), edge % (nx - 1));
+            [j * nx + i, j * nx + i + 1].map(|k| k as u32)
+        } else {
+            let (i, j) = ((edge - along_x) / (ny - 1), (edge - along_x) % (ny - 1));
+            [j * nx + i, (j + 1) * nx + i].map(|k| k as u32)
+        }
+    }
+
+    /// All visible pieces in order of edge and t.
+    pub fn iter(&self) -> impl Iterator<Item = Piece> {
+        let mut partial = self.pieces.iter().peekable();
+        self.status.iter().enumerate().flat_map(move |(edge, status)| {
+            let edge = edge as u32;
+            let mut found = Vec::new();
+            match *status {
+                UPPER => found.push(Piece { edge, t0: 0.0, t1: 1.0, side: Side::Upper }),
+                LOWER => found.push(Piece { edge, t0: 0.0, t1: 1.0, side: Side::Lower }),
+                PARTLY => {
+                    while let Some(piece) = partial.next_if(|piece| piece.edge == edge) {
+                        found.push(*piece);
+                    }
+                }
+                _ => {}
+            }
+            found
+        })
+    }
+
+    /// Sorts and joins what strips have found.
+    pub(super) fn join(nx: usize, ny: usize, mut status: Vec<u8>, mut found: Vec<Piece>) -> Self {
+        found.sort_unstable_by(|a, b| {
+            (a.edge.cmp(&b.edge))
+                .then(a.t0.total_cmp(&b.t0))
+                .then(a.side.cmp(&b.side))
+                .then(a.t1.total_cmp(&b.t1))
+        });
+        let mut pieces: Vec<Piece> = Vec::with_capacity(found.len());
+        let mut first = 0;
+        for edge_pieces in found.chunk_by(|a, b| a.edge == b.edge) {
+            let edge = edge_pieces[0].edge as usize;
+            if status[edge] == UPPER || status[edge] == LOWER {
+                continue;
+            }
+            for &piece in edge_pieces {
+                match pieces[first..].last_mut() {
+                    Some(last) if piece.t0 <= last.t1 && last.side == piece.side => {
+                        last.t1 = last.t1.max(piece.t1);
+                    }
+                    Some(last) if piece.t0 < last.t1 => {
+                        if piece.t1 > last.t1 {
+                            let t0 = last.t1;
+                            pieces.push(Piece { t0, ..piece });
+                        }
+                    }
+                    _ => pieces.push(piece),
+                }
+            }
+            match pieces[first..] {
+                [only] if only.t0 == 0.0 && only.t1 == 1.0 => {
+                    status[edge] = if only.side == Side::Upper { UPPER } else { LOWER };
+                    pieces.truncate(first);
+                }
+                _ => status[edge] = PARTLY,
+            }
+            first = pieces.len();
+        }
+        Self { nx, ny, status, pieces, work: super::Work::default() }
+    }
+}

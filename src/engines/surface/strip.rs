@@ -1,0 +1,213 @@
+//! A strip of u with its two horizons, and the record of what is visible in it.
+
+use std::cmp::Ordering;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
+use glam::DVec3;
+
+use super::Work;
+use super::horizon::{End, Horizon, Plane, Samples, Segment, Stop, Vertex};
+use super::pieces::{HIDDEN, LOWER, Piece, Side, UPPER};
+
+/// A strip of one part of the domain, from one u to another. Strips never hide each other.
+pub(super) struct Strip<'a, S: Samples> {
+    pub(super) plane: Plane<'a, S>,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Absent when the eye stands below the surface within the domain: all is below it.
+    upper: Option<Horizon>,
+    /// Absent when the eye stands above the surface within the domain.
+    lower: Option<Horizon>,
+    /// Edges wholly visible; each is written by the one strip that holds it.
+    status: &'a [AtomicU8],
+    pub(super) found: Vec<Piece>,
+}
+
+impl<'a, S: Samples> Strip<'a, S> {
+    pub(super) fn new(
+        plane: Plane<'a, S>,
+        (from, to): (f64, f64),
+        (upper, lower): (bool, bool),
+        status: &'a [AtomicU8],
+    ) -> Self {
+        let upper = upper.then(|| Horizon::new(from, to, true));
+        let lower = lower.then(|| Horizon::new(from, to, false));
+        Self { plane, from, to, upper, lower, status, found: Vec::new() }
+    }
+
+    pub(super) fn work(&self) -> Work {
+        let mut work = Work::default();
+        for horizon in [&self.upper, &self.lower].into_iter().flatten() {
+            work += horizon.work;
+        }
+        work
+    }
+
+    /// The segment between two samples of the part, `a` to the left of `b`, as far as it lies in the
+    /// strip.
+    #[inline]
+    pub(super) fn segment(&self, a: Vertex, b: Vertex) -> Option<Segment> {
+        let margin = 4.0 * self.plane.du;
+        let (mut left, mut right) = (End::Vertex, End::Vertex);
+        if !(a.u > self.from + margin && b.u < self.to - margin) {
+            if self.plane.order_to_border(b, self.from) != Ordering::Greater
+                || self.plane.order_to_border(a, self.to) != Ordering::Less
+            {
+                return None;
+            }
+            if self.plane.order_to_border(a, self.from) == Ordering::Less {
+                left = End::Border;
+            }
+            if self.plane.order_to_border(b, self.to) == Ordering::Greater {
+                right = End::Border;
+            }
+        }
+        Some(Segment::new(&self.plane, (a, left), (b, right)))
+    }
+
+    /// The segment between two samples that may lie outside the part, or be radial.
+    pub(super) fn clipped(&self, a: u32, b: u32) -> Option<Segment> {
+        let sight = &self.plane.sight;
+        let point = |id: u32| self.plane.samples.point(id);
+        let (a, b) = match sight.order(point(a), point(b)) {
+            Ordering::Less => (a, b),
+            Ordering::Equal => return None,
+            Ordering::Greater => (b, a),
+        };
+        let outside =
+            |id: u32, s: f64, at: fn(DVec3) -> f64| at(point(id)) * s < at(sight.centre) * s;
+        let out = |id: u32| outside(id, sight.sx, |p| p.x) || outside(id, sight.sy, |p| p.y);
+        let (a_out, b_out) = (out(a), out(b));
+        if a_out && b_out && !(outside(a, sight.sx, |p| p.x) && outside(b, sight.sy, |p| p.y)) {
+            return None;
+        }
+        let end = |out: bool| if out { End::Border } else { End::Vertex };
+        let mut segment = Segment::clipped(&self.plane, (a, end(a_out)), (b, end(b_out)));
+        let order = |id: u32, u: f64| self.plane.order_to_border(self.plane.vertex(id), u);
+        if (!b_out && order(b, self.from) != Ordering::Greater)
+            || (!a_out && order(a, self.to) != Ordering::Less)
+        {
+            return None;
+        }
+        segment.left = end(a_out || order(a, self.from) == Ordering::Less);
+        segment.right = end(b_out || order(b, self.to) == Ordering::Greater);
+        Some(segment)
+    }
+
+    /// Lets a segment hide what comes later.
+    #[inline]
+    pub(super) fn hide(&mut self, segment: &Segment) {
+        for horizon in [&mut self.upper, &mut self.lower].into_iter().flatten() {
+            horizon.add(&self.plane, segment, |_, _| {});
+        }
+    }
+
+    /// Records what is visible of a segment, which is an edge of the drawing, and lets it hide.
+    #[inline]
+    pub(super) fn draw(&mut self, segment: &Segment, edge: u32) {
+        let Self { plane, status, found, from, to, .. } = self;
+        let mut wholly = false;
+        for (horizon, side) in [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)] {
+            let Some(horizon) = horizon else { continue };
+            let seen_before = wholly;
+            horizon.add(plane, segment, |begin, end| {
+                if seen_before {
+                    return;
+                }
+                if (begin, end) == (Stop::Left, Stop::Right) {
+                    wholly = true;
+                    let seen = if side == Side::Upper { UPPER } else { LOWER };
+                    status[edge as usize].store(seen, Relaxed);
+                    return;
+                }
+                let t = |stop| place(plane, segment, stop, (*from, *to));
+                let (a, b) = (t(begin), t(end));
+                let (t0, t1) = (a.min(b), a.max(b));
+                if t0 < t1 {
+                    found.push(Piece { edge, t0, t1, side });
+                }
+            });
+        }
+    }
+
+    /// Records an edge as visible from end to end.
+    pub(super) fn draw_whole(&mut self, edge: u32) {
+        let side = if self.upper.is_some() { Side::Upper } else { Side::Lower };
+        self.found.push(Piece { edge, t0: 0.0, t1: 1.0, side });
+    }
+
+    /// As [`draw`](Self::draw), for an edge whose ends may lie outside the part.
+    pub(super) fn draw_clipped(&mut self, a: u32, b: u32, edge: u32) {
+        if let Some(segment) = self.clipped(a, b) {
+            self.draw(&segment, edge);
+        }
+    }
+
+    /// Records what is visible of a radial edge, whose ends are at the same u, as seen from the cell
+    /// on one side of it. `t_foot` is set when the edge's near end lies behind the eye's foot.
+    pub(super) fn draw_radial(
+        &mut self,
+        (near, far): (u32, u32),
+        edge: u32,
+        right_side: bool,
+        t_foot: Option<f64>,
+    ) {
+        let at = self.plane.vertex(far);
+        let from = self.plane.order_to_border(at, self.from);
+        let to = self.plane.order_to_border(at, self.to);
+        let inside = if right_side {
+            from != Ordering::Less && to == Ordering::Less
+        } else {
+            from == Ordering::Greater && to != Ordering::Greater
+        };
+        if !inside {
+            return;
+        }
+        for (horizon, side) in [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)] {
+            let Some(horizon) = horizon else { continue };
+            let Some((from, to)) = horizon.radial(&self.plane, near, far, right_side) else {
+                continue;
+            };
+            let from = t_foot.map_or(from, |t| from.max(t));
+            if (from, to) == (0.0, 1.0) {
+                // The cells on both sides may be in different strips, so the order must not matter.
+                let seen = if side == Side::Upper { UPPER } else { LOWER };
+                let merge = |old| Some(if old == HIDDEN { seen } else { seen.min(old) });
+                let _ = self.status[edge as usize].fetch_update(Relaxed, Relaxed, merge);
+                continue;
+            }
+            let (t0, t1) = if near < far { (from, to) } else { (1.0 - to, 1.0 - from) };
+            if t0 < t1 {
+                self.found.push(Piece { edge, t0, t1, side });
+            }
+        }
+    }
+}
+
+/// Where a stop lies on the edge, from 0 at the sample with the smaller number to 1.
+fn place<S: Samples>(
+    plane: &Plane<S>,
+    segment: &Segment,
+    stop: Stop,
+    (from, to): (f64, f64),
+) -> f64 {
+    let (a, b) = segment.ids();
+    let (first, last) = (plane.samples.point(a.min(b)), plane.samples.point(a.max(b)));
+    let u = match stop {
+        Stop::Left => return if a < b { 0.0 } else { 1.0 },
+        Stop::Right => return if a < b { 1.0 } else { 0.0 },
+        Stop::Border(u) if plane.sight.forward.is_none() && (u == -1.0 || u == 1.0) => {
+            // Both parts beside this border must find the same number.
+            let k = usize::from(u > 0.0);
+            let centre = plane.sight.centre[k];
+            return (centre - first[k]) / ((centre - first[k]) + (last[k] - centre));
+        }
+        Stop::Border(u) | Stop::Inside(u) => u.clamp(from, to),
+    };
+    let g = |p: DVec3| {
+        let [hu, hw, _] = plane.sight.rounded(p);
+        hu - u * hw
+    };
+    let (at_first, at_last) = (g(first), g(last));
+    (at_first / (at_first - at_last)).clamp(0.0, 1.0)
+}

@@ -1,0 +1,147 @@
+//! Text to tokens, each with the column it begins at.
+
+use super::{FormulaError, Problem};
+
+/// The words of the language.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Token {
+    Number(f64),
+    Name(String),
+    /// An operator or bracket, in its main spelling.
+    Symbol(&'static str),
+    End,
+}
+
+/// A token and the column of its first character, counted from 1.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Placed {
+    pub(super) token: Token,
+    pub(super) column: usize,
+}
+
+impl Token {
+    /// How an error names it.
+    pub(super) fn describe(&self) -> String {
+        match self {
+            Self::Number(value) => format!("the number {value}"),
+            Self::Name(name) => format!("`{name}`"),
+            Self::Symbol(symbol) => format!("`{symbol}`"),
+            Self::End => "the end of the formula".to_owned(),
+        }
+    }
+}
+
+/// Longest spellings first, so that `<=` is not read as `<`.
+const SYMBOLS: [(&str, &str); 29] = [
+    ("**", "^"),
+    ("<=", "<="),
+    (">=", ">="),
+    ("==", "=="),
+    ("!=", "!="),
+    ("&&", "&&"),
+    ("||", "||"),
+    ("≤", "<="),
+    ("≥", ">="),
+    ("≠", "!="),
+    ("−", "-"),
+    ("·", "*"),
+    ("×", "*"),
+    ("<", "<"),
+    (">", ">"),
+    ("=", "=="),
+    ("!", "!"),
+    ("+", "+"),
+    ("-", "-"),
+    ("*", "*"),
+    ("/", "/"),
+    ("%", "%"),
+    ("^", "^"),
+    ("(", "("),
+    (")", ")"),
+    (",", ","),
+    ("?", "?"),
+    (":", ":"),
+    ("π", "π"),
+];
+
+pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, FormulaError> {
+    let mut tokens = Vec::new();
+    let mut rest = text;
+    let mut column = 1;
+    while let Some(first) = rest.chars().next() {
+        let length = if first.is_whitespace() {
+            first.len_utf8()
+        } else if first.is_ascii_digit() || (first == '.' && starts_fraction(rest)) {
+            let length = number_length(rest);
+            let word = &rest[..length];
+            // A value too large for a number is an error here, not an infinite constant.
+            let value = fast_float2::parse::<f64, _>(word).ok().filter(|value| value.is_finite());
+            let value = value.ok_or_else(|| FormulaError {
+                column,
+                problem: Problem::Number(word.to_owned()),
+            })?;
+            tokens.push(Placed { token: Token::Number(value), column });
+            length
+        } else if let Some((spelling, symbol)) =
+            SYMBOLS.iter().find(|(spelling, _)| rest.starts_with(spelling))
+        {
+            let token =
+                if *symbol == "π" { Token::Name("pi".to_owned()) } else { Token::Symbol(symbol) };
+            tokens.push(Placed { token, column });
+            spelling.len()
+        } else if first.is_alphabetic() || first == '_' {
+            let length = rest
+                .find(|c: char| !(c.is_alphanumeric() || c == '_') || c == 'π')
+                .unwrap_or(rest.len());
+            let token = match rest[..length].to_lowercase().as_str() {
+                "and" => Token::Symbol("&&"),
+                "or" => Token::Symbol("||"),
+                "not" => Token::Symbol("!"),
+                "θ" => Token::Name("theta".to_owned()),
+                name => Token::Name(name.to_owned()),
+            };
+            tokens.push(Placed { token, column });
+            length
+        } else {
+            return Err(FormulaError { column, problem: Problem::Character(first) });
+        };
+        column += rest[..length].chars().count();
+        rest = &rest[length..];
+    }
+    if tokens.is_empty() {
+        return Err(FormulaError { column: 1, problem: Problem::Empty });
+    }
+    tokens.push(Placed { token: Token::End, column });
+    Ok(tokens)
+}
+
+fn starts_fraction(text: &str) -> bool {
+    text.as_bytes().get(1).is_some_and(u8::is_ascii_digit)
+}
+
+/// Bytes of the number that `text` begins with. An `e` belongs to it only when digits follow.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let mut end = digits(0);
+    if bytes.get(end) == Some(&b'.') {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let exponent_end = digits(end + 1 + sign);
+        if exponent_end > end + 1 + sign {
+            end = exponent_end;
+        }
+    }
+    // `1.2.3` is one wrong number, not two.
+    while matches!(bytes.get(end), Some(b'.' | b'0'..=b'9')) {
+        end += 1;
+    }
+    end
+}

@@ -1,0 +1,252 @@
+//! Tokens to a postfix tape, by operator precedence (Pratt 1973).
+
+use super::lexer::{Placed, Token};
+use super::tape::{CONSTANTS, FUNCTIONS, Op, Tape, function};
+use super::{FormulaError, MAX_DEPTH, Problem, Variables};
+
+pub(super) fn parse(tokens: &[Placed], variables: Variables) -> Result<Tape, FormulaError> {
+    let mut parser = Parser { tokens, at: 0, depth: 0, variables, tape: Tape::default() };
+    parser.expression(0)?;
+    match parser.peek() {
+        Token::End => Ok(parser.tape),
+        token => Err(parser.fails(Problem::ExpectedOperator(token.describe()))),
+    }
+}
+
+struct Parser<'a> {
+    /// Never empty; the last one is [`Token::End`] and is never passed.
+    tokens: &'a [Placed],
+    at: usize,
+    depth: usize,
+    variables: Variables,
+    tape: Tape,
+}
+
+/// How tightly an operator binds, and what it does; the tightest is `^`.
+const CONDITION: u8 = 1;
+const COMPARISON: u8 = 4;
+const UNARY: u8 = 7;
+const POWER: u8 = 8;
+
+fn binary(symbol: &str) -> Option<(u8, Op)> {
+    Some(match symbol {
+        "||" => (2, Op::Or),
+        "&&" => (3, Op::And),
+        "<" => (COMPARISON, Op::Less),
+        "<=" => (COMPARISON, Op::LessOrEqual),
+        ">" => (COMPARISON, Op::Greater),
+        ">=" => (COMPARISON, Op::GreaterOrEqual),
+        "==" => (COMPARISON, Op::Equal),
+        "!=" => (COMPARISON, Op::NotEqual),
+        "+" => (5, Op::Add),
+        "-" => (5, Op::Subtract),
+        "*" => (6, Op::Multiply),
+        "/" => (6, Op::Divide),
+        "%" => (6, Op::Modulo),
+        "^" => (POWER, Op::Power),
+        _ => return None,
+    })
+}
+
+impl<'a> Parser<'a> {
+    fn peek(&self) -> &'a Token {
+        &self.tokens[self.at].token
+    }
+
+    fn next(&mut self) -> &'a Token {
+        let token = self.peek();
+        self.at = (self.at + 1).min(self.tokens.len() - 1);
+        token
+    }
+
+    fn fails(&self, problem: Problem) -> FormulaError {
+        FormulaError { column: self.tokens[self.at].column, problem }
+    }
+
+    fn fails_at(&self, at: usize, problem: Problem) -> FormulaError {
+        FormulaError { column: self.tokens[at].column, problem }
+    }
+
+    fn expect(&mut self, symbol: &'static str, expected: &'static str) -> Result<(), FormulaError> {
+        if *self.peek() == Token::Symbol(symbol) {
+            self.next();
+            return Ok(());
+        }
+        let found = self.peek().describe();
+        Err(self.fails(Problem::Expected { expected, found }))
+    }
+
+    /// Reads everything that binds at least as tightly as `tightness`.
+    fn expression(&mut self, tightness: u8) -> Result<(), FormulaError> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            return Err(self.fails(Problem::TooDeep));
+        }
+        self.value()?;
+        while let Token::Symbol(symbol) = self.peek() {
+            if *symbol == "?" && tightness <= CONDITION {
+                self.next();
+                self.expression(0)?;
+                self.expect(":", "`:` and the value otherwise")?;
+                self.expression(CONDITION)?;
+                self.tape.push(Op::Select);
+                continue;
+            }
+            let Some((binding, op)) = binary(symbol).filter(|(b, _)| *b >= tightness) else {
+                break;
+            };
+            self.next();
+            // `^` binds to the right, and a sign may follow it: `2^-x`.
+            self.expression(if binding == POWER { UNARY } else { binding + 1 })?;
+            self.tape.push(op);
+            if binding == COMPARISON
+                && let Token::Symbol(again) = self.peek()
+                && binary(again).is_some_and(|(b, _)| b == COMPARISON)
+            {
+                return Err(self.fails(Problem::ChainedComparison));
+            }
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn value(&mut self) -> Result<(), FormulaError> {
+        let at = self.at;
+        match self.next() {
+            Token::Number(value) => self.tape.push(Op::Constant(*value)),
+            Token::Symbol("(") => {
+                self.expression(0)?;
+                self.expect(")", "`)`")?;
+            }
+            Token::Symbol("-") => {
+                self.expression(UNARY)?;
+                self.tape.push(Op::Negate);
+            }
+            Token::Symbol("+") => self.expression(UNARY)?,
+            Token::Symbol("!") => {
+                self.expression(UNARY)?;
+                self.tape.push(Op::Not);
+            }
+            Token::Name(name) => self.name(name, at)?,
+            token => {
+                return Err(self.fails_at(at, Problem::ExpectedValue(token.describe())));
+            }
+        }
+        Ok(())
+    }
+
+    fn name(&mut self, name: &str, at: usize) -> Result<(), FormulaError> {
+        if *self.peek() == Token::Symbol("(")
+            && let Some((name, takes, op)) = function(name)
+        {
+            self.next();
+            return self.arguments(name, takes, op, at);
+        }
+        let op = match (self.variables, name) {
+            (Variables::Plane, "x") | (Variables::Parameters, "u") => Op::First,
+            (Variables::Plane, "y") | (Variables::Parameters, "v") => Op::Second,
+            (Variables::Plane, "r") => Op::Radius,
+            (Variables::Plane, "theta") => Op::Angle,
+            _ => match CONSTANTS.iter().find(|(constant, _)| *constant == name) {
+                Some((_, value)) => Op::Constant(*value),
+                None => return Err(self.fails_at(at, unknown(name, self.variables))),
+            },
+        };
+        self.tape.push(op);
+        Ok(())
+    }
+
+    fn arguments(
+        &mut self,
+        name: &'static str,
+        takes: Takes,
+        op: Op,
+        at: usize,
+    ) -> Result<(), FormulaError> {
+        let mut given = 0;
+        if *self.peek() != Token::Symbol(")") {
+            loop {
+                self.expression(0)?;
+                given += 1;
+                if takes == Takes::TwoOrMore && given >= 2 {
+                    self.tape.push(op);
+                }
+                if *self.peek() != Token::Symbol(",") {
+                    break;
+                }
+                self.next();
+            }
+        }
+        self.expect(")", "`,` or `)`")?;
+        if !takes.allows(given) {
+            let takes = takes.in_words();
+            return Err(self.fails_at(at, Problem::ArgumentCount { name, takes, given }));
+        }
+        if takes != Takes::TwoOrMore {
+            self.tape.push(op);
+        }
+        Ok(())
+    }
+}
+
+/// How many arguments a function takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Takes {
+    One,
+    Two,
+    Three,
+    TwoOrMore,
+}
+
+impl Takes {
+    fn allows(self, given: usize) -> bool {
+        match self {
+            Self::One => given == 1,
+            Self::Two => given == 2,
+            Self::Three => given == 3,
+            Self::TwoOrMore => given >= 2,
+        }
+    }
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::One => "1 argument",
+            Self::Two => "2 arguments",
+            Self::Three => "3 arguments",
+            Self::TwoOrMore => "2 or more arguments",
+        }
+    }
+}
+
+fn unknown(name: &str, variables: Variables) -> Problem {
+    if let Some((function, ..)) = function(name) {
+        return Problem::FunctionNeedsArguments(function);
+    }
+    let variables: &[&'static str] = match variables {
+        Variables::Plane => &["theta"],
+        Variables::Parameters => &[],
+    };
+    let known = FUNCTIONS.iter().chain(CONSTANTS.iter().map(|(name, _)| name)).chain(variables);
+    let near = known
+        .map(|known| (edit_distance(name, known), *known))
+        .min()
+        .filter(|(distance, _)| *distance <= 2 && 2 * distance < name.chars().count())
+        .map(|(_, known)| known);
+    Problem::UnknownName { name: name.to_owned(), near }
+}
+
+/// Letters to insert, delete or change to turn one name into the other (Levenshtein).
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().take(40).enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, to) in b.iter().enumerate() {
+            let changed = diagonal + usize::from(from != *to);
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

@@ -1,0 +1,249 @@
+//! The postfix tape: operations on a stack of blocks of samples.
+
+use super::parser::Takes;
+
+/// Samples evaluated together, so that the cost of finding out what to do is shared.
+const BLOCK: usize = 64;
+
+/// Names with a value.
+pub const CONSTANTS: [(&str, f64); 4] = [
+    ("pi", std::f64::consts::PI),
+    ("e", std::f64::consts::E),
+    ("tau", std::f64::consts::TAU),
+    ("nan", f64::NAN),
+];
+
+/// Names of functions. `if(c, a, b)` is `c ? a : b`; `log` is the natural logarithm, as `ln`;
+/// `sinc(t)` is sin t / t, 1 at 0; `min` and `max` take two or more.
+pub const FUNCTIONS: [&str; 41] = [
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh",
+    "atanh", "sqrt", "cbrt", "exp", "ln", "log", "log2", "log10", "pow", "abs", "sign", "floor",
+    "ceil", "round", "trunc", "fract", "mod", "min", "max", "clamp", "hypot", "if", "sinc", "erf",
+    "gamma", "j0", "j1", "y0", "y1",
+];
+
+/// One step of the tape.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Op {
+    Constant(f64),
+    First,
+    Second,
+    Radius,
+    Angle,
+    Negate,
+    Not,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Modulo,
+    Power,
+    Square,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    NotEqual,
+    And,
+    Or,
+    Select,
+    Clamp,
+    Min,
+    Max,
+    Unary(fn(f64) -> f64),
+    Binary(fn(f64, f64) -> f64),
+}
+
+/// A function's name, how many arguments it takes, and what it does.
+pub(super) fn function(name: &str) -> Option<(&'static str, Takes, Op)> {
+    let name = FUNCTIONS.iter().find(|known| **known == name)?;
+    let unary = |f| (Takes::One, Op::Unary(f));
+    let binary = |f| (Takes::Two, Op::Binary(f));
+    let (takes, op) = match *name {
+        "sin" => unary(libm::sin),
+        "cos" => unary(libm::cos),
+        "tan" => unary(libm::tan),
+        "asin" => unary(libm::asin),
+        "acos" => unary(libm::acos),
+        "atan" => unary(libm::atan),
+        "atan2" => binary(libm::atan2),
+        "sinh" => unary(libm::sinh),
+        "cosh" => unary(libm::cosh),
+        "tanh" => unary(libm::tanh),
+        "asinh" => unary(libm::asinh),
+        "acosh" => unary(libm::acosh),
+        "atanh" => unary(libm::atanh),
+        // Square roots are rounded correctly by every processor.
+        "sqrt" => unary(f64::sqrt),
+        "cbrt" => unary(libm::cbrt),
+        "exp" => unary(libm::exp),
+        "ln" | "log" => unary(libm::log),
+        "log2" => unary(libm::log2),
+        "log10" => unary(libm::log10),
+        "pow" => (Takes::Two, Op::Power),
+        "abs" => unary(f64::abs),
+        "sign" => unary(|t| if t == 0.0 { 0.0 } else { t.signum() }),
+        "floor" => unary(libm::floor),
+        "ceil" => unary(libm::ceil),
+        "round" => unary(libm::round),
+        "trunc" => unary(libm::trunc),
+        "fract" => unary(|t| t - libm::floor(t)),
+        "mod" => (Takes::Two, Op::Modulo),
+        "min" => (Takes::TwoOrMore, Op::Min),
+        "max" => (Takes::TwoOrMore, Op::Max),
+        "clamp" => (Takes::Three, Op::Clamp),
+        "hypot" => binary(libm::hypot),
+        "if" => (Takes::Three, Op::Select),
+        "sinc" => unary(|t| if t == 0.0 { 1.0 } else { libm::sin(t) / t }),
+        "erf" => unary(libm::erf),
+        "gamma" => unary(libm::tgamma),
+        "j0" => unary(libm::j0),
+        "j1" => unary(libm::j1),
+        "y0" => unary(libm::y0),
+        _ => unary(libm::y1),
+    };
+    Some((name, takes, op))
+}
+
+/// A formula in postfix order; running it needs `depth` blocks of stack.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tape {
+    ops: Vec<Op>,
+    /// Blocks on the stack after the last step.
+    height: usize,
+    depth: usize,
+}
+
+impl PartialEq for Tape {
+    /// Functions are compared by how they print, which is enough for tests.
+    fn eq(&self, other: &Self) -> bool {
+        format!("{:?}", self.ops) == format!("{:?}", other.ops)
+    }
+}
+
+impl Tape {
+    pub(super) fn push(&mut self, op: Op) {
+        use Op::*;
+        // Squaring is by far the commonest power, and is rounded the same as a product.
+        if let (Power, Some(Constant(two))) = (op, self.ops.last())
+            && *two == 2.0
+        {
+            self.ops.pop();
+            self.ops.push(Square);
+            self.height -= 1;
+            return;
+        }
+        let taken = match op {
+            Constant(_) | First | Second | Radius | Angle => 0,
+            Negate | Not | Square | Unary(_) => 1,
+            Select | Clamp => 3,
+            _ => 2,
+        };
+        self.height = self.height + 1 - taken;
+        self.depth = self.depth.max(self.height);
+        self.ops.push(op);
+    }
+
+    /// Evaluates the tape at each pair.
+    pub(super) fn run(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        let mut stack = vec![[0.0; BLOCK]; self.depth + 1];
+        let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK)).zip(out.chunks_mut(BLOCK));
+        for ((a, b), out) in blocks {
+            let n = a.len().min(b.len()).min(out.len());
+            self.run_block(&a[..n], &b[..n], &mut stack);
+            out[..n].copy_from_slice(&stack[0][..n]);
+        }
+    }
+
+    fn run_block(&self, a: &[f64], b: &[f64], stack: &mut [[f64; BLOCK]]) {
+        use Op::*;
+        let n = a.len();
+        // One above the block at the top.
+        let mut top = 0;
+        for op in &self.ops {
+            match *op {
+                Constant(value) => push(stack, &mut top, n, |_| value),
+                First => push(stack, &mut top, n, |k| a[k]),
+                Second => push(stack, &mut top, n, |k| b[k]),
+                Radius => push(stack, &mut top, n, |k| (a[k] * a[k] + b[k] * b[k]).sqrt()),
+                Angle => push(stack, &mut top, n, |k| libm::atan2(b[k], a[k])),
+                Negate => unary(stack, top, n, |s| -s),
+                Not => unary(stack, top, n, |s| truth(!holds(s))),
+                Square => unary(stack, top, n, |s| s * s),
+                Unary(f) => unary(stack, top, n, f),
+                Add => binary(stack, &mut top, n, |s, t| s + t),
+                Subtract => binary(stack, &mut top, n, |s, t| s - t),
+                Multiply => binary(stack, &mut top, n, |s, t| s * t),
+                Divide => binary(stack, &mut top, n, |s, t| s / t),
+                Modulo => binary(stack, &mut top, n, modulo),
+                Power => binary(stack, &mut top, n, libm::pow),
+                Less => binary(stack, &mut top, n, |s, t| truth(s < t)),
+                LessOrEqual => binary(stack, &mut top, n, |s, t| truth(s <= t)),
+                Greater => binary(stack, &mut top, n, |s, t| truth(s > t)),
+                GreaterOrEqual => binary(stack, &mut top, n, |s, t| truth(s >= t)),
+                Equal => binary(stack, &mut top, n, |s, t| truth(s == t)),
+                NotEqual => binary(stack, &mut top, n, |s, t| truth(s != t)),
+                And => binary(stack, &mut top, n, |s, t| truth(holds(s) && holds(t))),
+                Or => binary(stack, &mut top, n, |s, t| truth(holds(s) || holds(t))),
+                Min => binary(stack, &mut top, n, |s, t| extreme(s, t, s < t)),
+                Max => binary(stack, &mut top, n, |s, t| extreme(s, t, s > t)),
+                Binary(f) => binary(stack, &mut top, n, f),
+                Select => ternary(stack, &mut top, n, |c, s, t| if holds(c) { s } else { t }),
+                Clamp => ternary(stack, &mut top, n, |t, low, high| {
+                    let raised = extreme(t, low, t > low);
+                    extreme(raised, high, raised < high)
+                }),
+            }
+        }
+    }
+}
+
+fn push(stack: &mut [[f64; BLOCK]], top: &mut usize, n: usize, f: impl Fn(usize) -> f64) {
+    stack[*top][..n].iter_mut().enumerate().for_each(|(k, s)| *s = f(k));
+    *top += 1;
+}
+
+fn unary(stack: &mut [[f64; BLOCK]], top: usize, n: usize, f: impl Fn(f64) -> f64) {
+    stack[top - 1][..n].iter_mut().for_each(|s| *s = f(*s));
+}
+
+fn binary(stack: &mut [[f64; BLOCK]], top: &mut usize, n: usize, f: impl Fn(f64, f64) -> f64) {
+    *top -= 1;
+    let (below, above) = stack.split_at_mut(*top);
+    let target = &mut below[*top - 1];
+    target[..n].iter_mut().zip(&above[0][..n]).for_each(|(s, t)| *s = f(*s, *t));
+}
+
+fn ternary(
+    stack: &mut [[f64; BLOCK]],
+    top: &mut usize,
+    n: usize,
+    f: impl Fn(f64, f64, f64) -> f64,
+) {
+    *top -= 2;
+    let (below, above) = stack.split_at_mut(*top);
+    let target = &mut below[*top - 1];
+    for k in 0..n {
+        target[k] = f(target[k], above[0][k], above[1][k]);
+    }
+}
+
+fn holds(value: f64) -> bool {
+    value != 0.0 && !value.is_nan()
+}
+
+fn truth(value: bool) -> f64 {
+    if value { 1.0 } else { 0.0 }
+}
+
+/// `s` when it is chosen, otherwise `t`; not a number when either is not.
+fn extreme(s: f64, t: f64, s_is_chosen: bool) -> f64 {
+    if s.is_nan() || s_is_chosen { s } else { t }
+}
+
+/// The remainder with the sign of the divisor.
+fn modulo(s: f64, t: f64) -> f64 {
+    let remainder = libm::fmod(s, t);
+    if remainder != 0.0 && (remainder < 0.0) != (t < 0.0) { remainder + t } else { remainder }
+}

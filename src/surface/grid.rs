@@ -1,0 +1,228 @@
+//! A surface sampled on a rectangular grid.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::formula::Formula;
+use crate::mesh::PolygonSoup;
+
+/// Most samples of a grid: 10⁸.
+pub const MAX_SAMPLES: usize = 100_000_000;
+
+/// Heights over a rectangular grid whose lines need not be evenly spaced.
+///
+/// ```text
+///   y ▲   (i,j+1)──(i+1,j+1)        The surface is triangulated: each cell is cut along
+///     │      │    ╱    │            (i,j)–(i+1,j+1). Sample (i,j) stands at (xs[i], ys[j]).
+///     │      │  ╱      │            A height that is not a number is a hole: the cells
+///     │    (i,j)────(i+1,j)         around it are no part of the surface.
+///     └──────────────────► x
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+    zs: Vec<f64>,
+}
+
+/// Which samples of a grid have no height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Holes {
+    /// Every sample has a height.
+    None,
+    /// Some have none.
+    Some,
+    /// None has.
+    All,
+}
+
+/// Why numbers make no grid.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum GridError {
+    /// Fewer than two samples along an axis.
+    #[error("{found} samples along {axis} make no surface; at least 2 are needed")]
+    TooFew {
+        /// `x` or `y`.
+        axis: char,
+        /// How many there are.
+        found: usize,
+    },
+    /// More than [`MAX_SAMPLES`].
+    #[error("{x} × {y} samples are more than {MAX_SAMPLES}")]
+    TooMany {
+        /// Along x.
+        x: usize,
+        /// Along y.
+        y: usize,
+    },
+    /// A range that is reversed, empty or not finite.
+    #[error(
+        "the range of {axis} must go from a smaller to a larger number, not from {from} to {to}"
+    )]
+    Range {
+        /// `x` or `y`.
+        axis: char,
+        /// First value.
+        from: f64,
+        /// Last value.
+        to: f64,
+    },
+    /// Coordinates that do not increase, because they are unsorted or too close for their size.
+    #[error("the {axis} values must increase, but value {index} ({value}) does not")]
+    NotIncreasing {
+        /// `x` or `y`.
+        axis: char,
+        /// Counted from 0.
+        index: usize,
+        /// The one that is no larger than the one before.
+        value: f64,
+    },
+    /// Heights that do not fill the grid.
+    #[error("{found} heights for {x} × {y} samples")]
+    Count {
+        /// Along x.
+        x: usize,
+        /// Along y.
+        y: usize,
+        /// How many heights there are.
+        found: usize,
+    },
+}
+
+/// `n` values from `from` to `to`, ends included: `from + (to − from)·i/(n − 1)`, in this order.
+pub fn evenly(from: f64, to: f64, n: usize) -> Vec<f64> {
+    let last = n.saturating_sub(1).max(1) as f64;
+    (0..n).map(|i| from + (to - from) * i as f64 / last).collect()
+}
+
+impl Grid {
+    /// A grid with given lines; `zs` holds the heights row by row, the row of `ys[0]` first.
+    /// Heights that are not finite become holes; −0 becomes 0.
+    ///
+    /// # Errors
+    /// Too few or too many samples, coordinates that do not increase, or a wrong count of heights.
+    pub fn new(xs: Vec<f64>, ys: Vec<f64>, mut zs: Vec<f64>) -> Result<Self, GridError> {
+        check_size(xs.len(), ys.len())?;
+        for (axis, values) in [('x', &xs), ('y', &ys)] {
+            let wrong = |k: usize| {
+                !values[k].is_finite()
+                    || k > 0
+                        && values[k].partial_cmp(&values[k - 1])
+                            != Some(std::cmp::Ordering::Greater)
+            };
+            if let Some(index) = (0..values.len()).find(|&k| wrong(k)) {
+                return Err(GridError::NotIncreasing { axis, index, value: values[index] });
+            }
+        }
+        if zs.len() != xs.len() * ys.len() {
+            return Err(GridError::Count { x: xs.len(), y: ys.len(), found: zs.len() });
+        }
+        for z in &mut zs {
+            *z = if z.is_finite() { *z + 0.0 } else { f64::NAN };
+        }
+        Ok(Self { xs, ys, zs })
+    }
+
+    /// Samples a formula on `n` = (along x, along y) evenly spaced lines. O(samples), in parallel.
+    ///
+    /// # Errors
+    /// A range that does not increase, too few or too many samples.
+    pub fn sample(
+        formula: &Formula,
+        x: (f64, f64),
+        y: (f64, f64),
+        n: (usize, usize),
+    ) -> Result<Self, GridError> {
+        check_size(n.0, n.1)?;
+        for (axis, (from, to)) in [('x', x), ('y', y)] {
+            if !(from < to && from.is_finite() && (to - from).is_finite()) {
+                return Err(GridError::Range { axis, from, to });
+            }
+        }
+        let (xs, ys) = (evenly(x.0, x.1, n.0), evenly(y.0, y.1, n.1));
+        let mut zs = vec![0.0; n.0 * n.1];
+        zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
+            formula.values(&xs, &vec![y; xs.len()], row);
+        });
+        Self::new(xs, ys, zs)
+    }
+
+    /// The x of each line across x, increasing.
+    pub fn xs(&self) -> &[f64] {
+        &self.xs
+    }
+
+    /// The y of each line across y, increasing.
+    pub fn ys(&self) -> &[f64] {
+        &self.ys
+    }
+
+    /// Heights, row by row; a hole is not a number.
+    pub fn zs(&self) -> &[f64] {
+        &self.zs
+    }
+
+    /// The sample with index `j · xs.len() + i`. Panics when there is none.
+    pub fn point(&self, sample: u32) -> DVec3 {
+        let (j, i) = (sample as usize / self.xs.len(), sample as usize % self.xs.len());
+        DVec3::new(self.xs[i], self.ys[j], self.zs[sample as usize])
+    }
+
+    /// Lowest and highest height; `None` when all samples are holes.
+    pub fn heights(&self) -> Option<(f64, f64)> {
+        let range = |(low, high): (f64, f64), z: &f64| (low.min(*z), high.max(*z));
+        // `min` and `max` pass over what is not a number.
+        let (low, high) = self.zs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), range);
+        (low <= high).then_some((low, high))
+    }
+
+    /// Multiplies all heights.
+    pub fn scale_heights(&mut self, factor: f64) {
+        self.zs.iter_mut().for_each(|z| *z *= factor);
+    }
+
+    /// Whether some samples have no height. O(samples).
+    pub fn holes(&self) -> Holes {
+        match self.zs.iter().filter(|z| z.is_nan()).count() {
+            0 => Holes::None,
+            n if n == self.zs.len() => Holes::All,
+            _ => Holes::Some,
+        }
+    }
+
+    /// The triangles of the surface, for the engines that draw meshes. Vertex numbers are sample
+    /// numbers. An edge is a grid line when its ends agree in x or in y, otherwise a diagonal,
+    /// which hides but is not drawn. Samples without a height stand at height 0 and have no faces.
+    pub fn to_soup(&self) -> PolygonSoup {
+        let n = self.xs.len() as u32;
+        let positions = (0..self.zs.len() as u32)
+            .map(|k| self.point(k))
+            .map(|p| if p.z.is_nan() { p.with_z(0.0) } else { p })
+            .collect();
+        let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
+        for j in 0..self.ys.len() as u32 - 1 {
+            for i in 0..n - 1 {
+                let k = j * n + i;
+                for triangle in [[k, k + 1, k + n + 1], [k, k + n + 1, k + n]] {
+                    if triangle.iter().all(|&k| !self.zs[k as usize].is_nan()) {
+                        soup.push_face(&triangle);
+                    }
+                }
+            }
+        }
+        soup
+    }
+}
+
+fn check_size(x: usize, y: usize) -> Result<(), GridError> {
+    for (axis, found) in [('x', x), ('y', y)] {
+        if found < 2 {
+            return Err(GridError::TooFew { axis, found });
+        }
+    }
+    if x.checked_mul(y).is_none_or(|n| n > MAX_SAMPLES) {
+        return Err(GridError::TooMany { x, y });
+    }
+    Ok(())
+}

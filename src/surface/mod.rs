@@ -1,0 +1,7 @@
+//! Surfaces z = f(x, y): where their samples come from, and the mesh they make.
+
+mod csv;
+mod grid;
+
+pub use csv::{CsvError, Placement, read_csv};
+pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};

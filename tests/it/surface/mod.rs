@@ -1,0 +1,5 @@
+//! Function surfaces: engines against brute force and closed forms.
+
+mod brute;
+mod floating_horizon;
+mod max_min;
