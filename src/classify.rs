@@ -17,6 +17,7 @@
 use crate::predicates::{Sight, Sign};
 use crate::scene::Scene;
 use crate::strokes::StrokeKind;
+use crate::topology::EdgeUse;
 use crate::triangulate::newell_normal;
 use crate::view::{Camera, Frame, Projection};
 use glam::{DVec2, DVec3};
@@ -250,9 +251,8 @@ impl<'a> ViewedScene<'a> {
             let kind = if is_boundary { StrokeKind::Boundary } else { StrokeKind::Nonmanifold };
             return chosen(kind);
         };
-        let faces = [first, second].map(|corner| topology.corner_face(corner));
-        let mesh = self.scene.mesh();
-        let against = topology.runs_upwards(mesh, first) == topology.runs_upwards(mesh, second);
+        let faces = [first, second].map(EdgeUse::face);
+        let against = first.runs_upwards() == second.runs_upwards();
         let facing = self.facing(faces[0]);
         let other = self.facing(faces[1]);
         let other = if against { other.flipped() } else { other };

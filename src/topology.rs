@@ -1,14 +1,12 @@
 //! Which faces meet at which edges. No coordinates in here.
 //!
 //! An *edge* is an unordered pair of vertices. Its *uses* are the times a face's border runs along
-//! it: a closed surface uses each edge twice, a border once, a fin three times. A use is named by
-//! the corner it starts from, so one number tells the face, the place on its border and, compared
-//! with [`Topology::edge`], the direction:
+//! it: a closed surface uses each edge twice, a border once, a fin three times.
 //!
 //! ```text
-//!     corner c      corner c + 1 (or the first corner of the face)
-//!        ●─────use c────►●
-//!       ╱    face of c    ╲
+//!     lower vertex      higher vertex
+//!          ●───────────────►●        a use that runs upwards, by the face above;
+//!          ●◄───────────────●        consistent winding makes the other run downwards
 //! ```
 
 use crate::mesh::Mesh;
@@ -19,9 +17,30 @@ use rayon::prelude::*;
 pub struct Topology {
     edges: Vec<[u32; 2]>,
     use_starts: Vec<u32>,
-    uses: Vec<u32>,
-    corner_edges: Vec<u32>,
-    corner_faces: Vec<u32>,
+    uses: Vec<EdgeUse>,
+}
+
+/// One time that a face's border runs along an edge.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct EdgeUse {
+    /// The face, and in the lowest bit whether the border runs upwards.
+    packed: u32,
+}
+
+impl EdgeUse {
+    fn new(face: usize, upwards: bool) -> Self {
+        Self { packed: (face as u32) << 1 | u32::from(upwards) }
+    }
+
+    /// The face.
+    pub fn face(self) -> u32 {
+        self.packed >> 1
+    }
+
+    /// Whether the face's border runs from the edge's lower vertex to its higher one.
+    pub fn runs_upwards(self) -> bool {
+        self.packed & 1 == 1
+    }
 }
 
 /// Counts of what a mesh is made of, for summaries.
@@ -35,13 +54,13 @@ pub struct EdgeCounts {
     pub inconsistent: usize,
 }
 
-/// One use of an edge while the table is built: the higher vertex and the corner.
-type Entry = (u32, u32);
+/// One use of an edge while the table is built, with the higher vertex.
+type Entry = (u32, EdgeUse);
 
 impl Topology {
     /// Finds the edges of `mesh`, ordered by their lower vertex, then their higher one.
     ///
-    /// The uses of an edge are in the order of their corners. O(corners), in parallel.
+    /// The uses of an edge are in the order of their faces. O(corners), in parallel.
     pub fn new(mesh: &Mesh) -> Self {
         let corners = mesh.corners();
         let face_starts = mesh.face_starts();
@@ -60,12 +79,11 @@ impl Topology {
             })
             .collect();
 
+        let n_edges = parts.iter().map(|part| part.edges.len()).sum();
         let mut topology = Self {
-            edges: Vec::with_capacity(parts.iter().map(|p| p.edges.len()).sum()),
-            use_starts: Vec::with_capacity(parts.iter().map(|p| p.edges.len()).sum::<usize>() + 1),
+            edges: Vec::with_capacity(n_edges),
+            use_starts: Vec::with_capacity(n_edges + 1),
             uses: Vec::with_capacity(corners.len()),
-            corner_edges: vec![0; corners.len()],
-            corner_faces: vec![0; corners.len()],
         };
         topology.use_starts.push(0);
         for part in &parts {
@@ -73,15 +91,6 @@ impl Topology {
             topology.edges.extend_from_slice(&part.edges);
             topology.use_starts.extend(part.use_ends.iter().map(|end| before + end));
             topology.uses.extend_from_slice(&part.uses);
-        }
-        for edge in 0..topology.edges.len() {
-            let range = topology.use_starts[edge] as usize..topology.use_starts[edge + 1] as usize;
-            for &corner in &topology.uses[range] {
-                topology.corner_edges[corner as usize] = edge as u32;
-            }
-        }
-        for (face, range) in face_starts.windows(2).enumerate() {
-            topology.corner_faces[range[0] as usize..range[1] as usize].fill(face as u32);
         }
         topology
     }
@@ -101,34 +110,19 @@ impl Topology {
         self.edges.binary_search(&[a.min(b), a.max(b)]).ok().map(|edge| edge as u32)
     }
 
-    /// The uses of one edge, each named by its corner. Panics when there is no such edge.
-    pub fn uses(&self, edge: u32) -> &[u32] {
+    /// The uses of one edge. Panics when there is no such edge.
+    pub fn uses(&self, edge: u32) -> &[EdgeUse] {
         let edge = edge as usize;
         &self.uses[self.use_starts[edge] as usize..self.use_starts[edge + 1] as usize]
     }
 
-    /// The edge that leaves `corner` along its face's border.
-    pub fn corner_edge(&self, corner: u32) -> u32 {
-        self.corner_edges[corner as usize]
-    }
-
-    /// The face that `corner` belongs to.
-    pub fn corner_face(&self, corner: u32) -> u32 {
-        self.corner_faces[corner as usize]
-    }
-
-    /// Whether the use at `corner` runs from the lower vertex to the higher one.
-    pub fn runs_upwards(&self, mesh: &Mesh, corner: u32) -> bool {
-        mesh.corners()[corner as usize] == self.edge(self.corner_edge(corner))[0]
-    }
-
     /// Counts what is not a closed, consistently wound surface.
-    pub fn count_edges(&self, mesh: &Mesh) -> EdgeCounts {
+    pub fn count_edges(&self) -> EdgeCounts {
         let mut counts = EdgeCounts::default();
         for edge in 0..self.edges.len() as u32 {
             match *self.uses(edge) {
                 [_] => counts.boundary += 1,
-                [a, b] if self.runs_upwards(mesh, a) == self.runs_upwards(mesh, b) => {
+                [a, b] if a.runs_upwards() == b.runs_upwards() => {
                     counts.inconsistent += 1;
                 }
                 [_, _] => {}
@@ -143,7 +137,7 @@ impl Topology {
 struct Part {
     edges: Vec<[u32; 2]>,
     use_ends: Vec<u32>,
-    uses: Vec<u32>,
+    uses: Vec<EdgeUse>,
 }
 
 impl Part {
@@ -158,12 +152,12 @@ impl Part {
         for i in 0..n_vertices {
             starts[i + 1] += starts[i];
         }
-        let mut entries: Vec<Entry> = vec![(0, 0); starts[n_vertices] as usize];
+        let mut entries: Vec<Entry> = vec![Entry::default(); starts[n_vertices] as usize];
         let mut next = starts.clone();
-        for_each_use(corners, face_starts, |low, high, corner| {
+        for_each_use(corners, face_starts, |low, high, edge_use| {
             if vertices.contains(&low) {
                 let slot = &mut next[(low - vertices.start) as usize];
-                entries[*slot as usize] = (high, corner);
+                entries[*slot as usize] = (high, edge_use);
                 *slot += 1;
             }
         });
@@ -175,12 +169,12 @@ impl Part {
         for (low, range) in (vertices).zip(starts.windows(2)) {
             let bucket = &mut entries[range[0] as usize..range[1] as usize];
             bucket.sort_unstable();
-            for &(high, corner) in bucket.iter() {
+            for &(high, edge_use) in bucket.iter() {
                 if part.edges.last() != Some(&[low, high]) {
                     part.edges.push([low, high]);
                     part.use_ends.push(0);
                 }
-                part.uses.push(corner);
+                part.uses.push(edge_use);
                 if let Some(end) = part.use_ends.last_mut() {
                     *end = part.uses.len() as u32;
                 }
@@ -190,16 +184,15 @@ impl Part {
     }
 }
 
-/// Calls `f` with the lower vertex, the higher vertex and the corner of every use of an edge.
-fn for_each_use(corners: &[u32], face_starts: &[u32], mut f: impl FnMut(u32, u32, u32)) {
-    for range in face_starts.windows(2) {
-        let (start, end) = (range[0] as usize, range[1] as usize);
-        let mut from = corners[end - 1];
-        let mut corner = end - 1;
-        for (i, &to) in corners[start..end].iter().enumerate() {
-            f(from.min(to), from.max(to), corner as u32);
+/// Calls `f` with the lower vertex and the higher vertex of every use of an edge, and the use.
+fn for_each_use(corners: &[u32], face_starts: &[u32], mut f: impl FnMut(u32, u32, EdgeUse)) {
+    for (face, range) in face_starts.windows(2).enumerate() {
+        let border = &corners[range[0] as usize..range[1] as usize];
+        let Some(&last) = border.last() else { continue };
+        let mut from = last;
+        for &to in border {
+            f(from.min(to), from.max(to), EdgeUse::new(face, from < to));
             from = to;
-            corner = start + i;
         }
     }
 }
