@@ -15,6 +15,7 @@ mod oracle;
 mod plotter_formats;
 mod readers;
 mod scenes;
+mod strokes;
 mod surface;
 mod truth;
 mod views;
