@@ -115,6 +115,19 @@ impl<'a> Sight<'a> {
         if self.in_window { estimate.sign() } else { None }
     }
 
+    /// An estimate and its sign, by the exact path when the bound does not decide.
+    #[inline]
+    fn settled(&self, estimate: Estimate, exact: impl FnOnce() -> [IBig; 2]) -> (Estimate, Sign) {
+        match self.decided(estimate) {
+            Some(sign) => (estimate, sign),
+            None => {
+                self.count_exact();
+                let [value, _] = exact();
+                undecided(estimate, exact::sign(&value))
+            }
+        }
+    }
+
     /// The plane of sight through two vertices: its value at `x` is `turn(p, q, x)`.
     #[inline]
     pub fn sight_plane(&self, p: u32, q: u32) -> PlaneThrough {
@@ -149,14 +162,7 @@ impl<'a> Sight<'a> {
             return (Estimate::ZERO, Sign::Zero);
         }
         let estimate = plane.negated_at(self.position(x));
-        match self.decided(estimate) {
-            Some(sign) => (estimate, sign),
-            None => {
-                self.count_exact();
-                let [value, _] = self.exact_turns(p, q, [x, x]);
-                undecided(estimate, exact::sign(&value))
-            }
-        }
+        self.settled(estimate, || self.exact_turns(p, q, [x, x]))
     }
 
     /// `depth(p, q, r; x)` and its sign, for the plane of the triangle.
@@ -168,14 +174,7 @@ impl<'a> Sight<'a> {
             return (Estimate::ZERO, Sign::Zero);
         }
         let estimate = plane.negated_at(self.position(x));
-        match self.decided(estimate) {
-            Some(sign) => (estimate, sign),
-            None => {
-                self.count_exact();
-                let [value, _] = self.exact_depths(triangle, [x, x]);
-                undecided(estimate, exact::sign(&value))
-            }
-        }
+        self.settled(estimate, || self.exact_depths(triangle, [x, x]))
     }
 
     /// The sign of `turn(a, b, c)`: positive when the image of the path turns counter-clockwise.
@@ -254,14 +253,7 @@ impl<'a> Sight<'a> {
             value: d.dot(self.forward) - limit,
             error: TRIPLE_PRODUCT_ERROR * (d.abs().dot(self.forward.abs()) + limit),
         };
-        match self.decided(estimate) {
-            Some(sign) => (estimate, sign),
-            None => {
-                self.count_exact();
-                let [value, _] = self.exact_near_distances([x, x]);
-                undecided(estimate, exact::sign(&value))
-            }
-        }
+        self.settled(estimate, || self.exact_near_distances([x, x]))
     }
 
     /// The plane of sight through the near plane's cut of `triangle`, at both of `ends`.
