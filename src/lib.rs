@@ -1,13 +1,32 @@
 //! Exact hidden-line drawings of 3D models and surfaces, for print and pen plotters.
 //!
 //! ```text
-//!  read ──► mesh ──► scene ──────► view ─► classify ──► engines ──► visibility
-//!  files    polygons topology,     camera  faces, edges  which parts  spans of qi
-//!                    triangles                           are hidden       │
-//!                                                                         ▼
-//!        bytes ◄── writers ◄── plot ◄── page ◄─────────────────────── strokes
-//!                              mm, pens  placement                    polylines
+//!  model files            formulas, height files
+//!       │                          │
+//!     read ─► mesh, arrange     formula, surface ──────────┐
+//!                  │               │ (as a mesh)           │
+//!                  ▼               ▼                       ▼
+//!                scene ◄───────────┘                engines::surface
+//!       topology, triangulate                       horizons over a grid
+//!                  │                                       │
+//!   view ──────► classify ─► engines::edge ─► visibility   │
+//!   framing    faces, edges  what is hidden   spans of qi  │
+//!                                                  │       │
+//!                                                chain     │
+//!                                                  ▼       ▼
+//!                                               strokes: polylines in the image
+//!                                                  │
+//!                                                page: placement on paper
+//!                                                  ▼
+//!  line SVG ─► line_svg ──────────────────────► plot: millimetres, a layer a pen
+//!                                                  │
+//!                                               optimize: joined, in short order
+//!                                                  ▼
+//!                                               writers ─► bytes
 //! ```
+//!
+//! [`draw`] runs the stages from scene to strokes; [`predicates`] make every decision on the way.
+//! To read the code, take the modules in the order below.
 //!
 //! # What is exact
 //!
