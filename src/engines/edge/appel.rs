@@ -51,7 +51,7 @@ use cutting::{Sides, Stars};
 use doubled::Partners;
 use propagate::{Base, Levels};
 use rayon::prelude::*;
-use start::{layers_beyond, local_layers};
+use start::{is_plain, layers_beyond, local_layers};
 use std::sync::Mutex;
 use trace::{Change, Surroundings, Trace, Tracer};
 
@@ -65,7 +65,7 @@ const CHUNK: usize = 512;
 pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     let segments = roberts::segments(view);
     let sides = Sides::new(view);
-    let cutting = sides.cutting_edges(view);
+    let (cutting, is_even) = sides.cutting_edges(view);
     let n_triangles = view.scene().triangles().len();
     let rounding = Rounding::new(view);
     let drawn = segments.iter().flatten();
@@ -76,7 +76,8 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     });
     let triangle_index = ImageIndex::of_items(view, drawn, n_triangles, None, |triangle| {
         place_in_space(view, &rounding, triangle, settings.contact_tolerance)
-    });
+    })
+    .sorted_by_depth();
     let around = Surroundings {
         cutting: &cutting,
         cutting_index: &cutting_index,
@@ -89,10 +90,15 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
         is_end[end as usize] = true;
     }
     let stars = Stars::new(view, &is_end);
+    let is_plain = (0..is_even.len() as u32)
+        .into_par_iter()
+        .map(|v| is_even[v as usize] && is_end[v as usize] && is_plain(view, &stars, v))
+        .collect();
+    let neighbors = Neighbors { sides: &sides, stars: &stars, is_plain };
     let traced: Vec<Chunk> = segments
         .par_chunks(CHUNK)
         .map(|segments| {
-            tracers.with(|tracer| Chunk::trace(view, &around, &stars, segments, tracer))
+            tracers.with(|tracer| Chunk::trace(view, &around, &neighbors, segments, tracer))
         })
         .collect();
 
@@ -166,6 +172,26 @@ impl<'s> Tracers<'s> {
     }
 }
 
+/// What is around vertices.
+struct Neighbors<'n> {
+    sides: &'n Sides<'n>,
+    stars: &'n Stars,
+    /// Whether the triangles around a vertex lie side by side, once around.
+    is_plain: Vec<bool>,
+}
+
+impl Neighbors<'_> {
+    /// The layers of triangles around each end of a segment, just beyond it.
+    fn local_layers(&self, view: &ViewedScene, segment: &Segment) -> [[i32; 2]; 2] {
+        let plain = segment.ends.map(|end| self.is_plain[end as usize]);
+        let is_between = (plain[0] || plain[1]) && self.sides.is_even(view, segment.edge);
+        [0, 1].map(|end| match is_between && plain[end] {
+            true => [0; 2],
+            false => local_layers(view, self.stars, segment.ends, end),
+        })
+    }
+}
+
 /// What a chunk of segments meets.
 struct Chunk {
     trace: Trace,
@@ -187,7 +213,7 @@ impl Chunk {
     fn trace(
         view: &ViewedScene,
         around: &Surroundings,
-        stars: &Stars,
+        neighbors: &Neighbors,
         segments: &[Option<Segment>],
         tracer: &mut Tracer,
     ) -> Self {
@@ -195,7 +221,7 @@ impl Chunk {
         for segment in segments {
             let link = segment.as_ref().map_or_else(Link::default, |segment| Link {
                 total: tracer.trace(view, around, segment, &mut chunk.trace),
-                local: [0, 1].map(|end| local_layers(view, stars, segment.ends, end)),
+                local: neighbors.local_layers(view, segment),
             });
             chunk.links.push(link);
             chunk.ends.push(chunk.trace.changes.len() as u32);

@@ -121,6 +121,22 @@ impl Entry {
     }
 }
 
+impl Sorting {
+    fn sort(entries: &mut [Entry]) -> Self {
+        let thickness = |e: &Entry| f64::from(e.farthest) - f64::from(e.nearest);
+        let finite = || entries.iter().map(thickness).filter(|t| t.is_finite());
+        let average = finite().sum::<f64>() / finite().count().max(1) as f64;
+        let is_deep = |e: &Entry| !(thickness(e) <= DEEP * average);
+        entries.sort_unstable_by(|a, b| {
+            let by_depth = a.nearest.total_cmp(&b.nearest).then(a.item.cmp(&b.item));
+            is_deep(b).cmp(&is_deep(a)).then(by_depth)
+        });
+        let n_deep = entries.partition_point(is_deep);
+        let thickest = entries[n_deep..].iter().map(thickness).fold(0.0, f64::max);
+        Self { n_deep: n_deep as u32, thickness: thickest.next_up() }
+    }
+}
+
 fn rounded_down(x: f64) -> f32 {
     let rounded = x as f32;
     if f64::from(rounded) > x { rounded.next_down() } else { rounded }
@@ -232,7 +248,21 @@ pub(super) struct ImageIndex {
     /// Items to be offered to every segment: triangles that the near plane cuts.
     everywhere: Vec<u32>,
     n_items: usize,
+    /// For each cell how its entries are sorted; empty when they are not.
+    sorting: Vec<Sorting>,
 }
+
+/// The order of a cell's entries by depth.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sorting {
+    /// How many entries that reach unusually far come first, in no order.
+    n_deep: u32,
+    /// The farthest that any of the others reaches behind its nearest point.
+    thickness: f64,
+}
+
+/// An entry that reaches this many times further than the average of its cell is a deep one.
+const DEEP: f64 = 4.0;
 
 impl ImageIndex {
     /// An index of the triangles that may cover some of `segments`.
@@ -279,6 +309,7 @@ impl ImageIndex {
             covered_from: Vec::new(),
             everywhere: Vec::new(),
             n_items,
+            sorting: Vec::new(),
         };
         if n_segments == 0 {
             return index;
@@ -291,6 +322,41 @@ impl ImageIndex {
         }
         index.insert(&near, marks.as_deref());
         index
+    }
+
+    /// Sorts the items of each cell by depth, so that segments skip those well in front of them.
+    ///
+    /// ```text
+    ///   nearest    ├──┤ ├────┤  ├──┤ ├─────┤  ├──┤  farthest
+    ///                          ├──┤ segment
+    ///                  └────────┘ thickness: what begins before this ends before the segment
+    /// ```
+    #[must_use]
+    pub(super) fn sorted_by_depth(mut self) -> Self {
+        let mut cells: Vec<&mut [Entry]> = Vec::with_capacity(self.starts.len());
+        let mut rest = &mut self.entries[..];
+        for pair in self.starts.windows(2) {
+            let (cell, others) = rest.split_at_mut((pair[1] - pair[0]) as usize);
+            cells.push(cell);
+            rest = others;
+        }
+        self.sorting = cells.into_par_iter().with_min_len(1024).map(Sorting::sort).collect();
+        self
+    }
+
+    /// The entries of a cell that may be within a range of depths, in two runs.
+    #[inline]
+    fn entries_near(&self, cell: usize, own: &Entry) -> [&[Entry]; 2] {
+        let all = &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        let Some(sorting) = self.sorting.get(cell).filter(|_| !all.is_empty()) else {
+            return [all, &[]];
+        };
+        let (deep, others) = all.split_at(sorting.n_deep as usize);
+        let begins_before = |e: &Entry| e.nearest <= own.farthest;
+        let ends_before =
+            |e: &Entry| f64::from(e.nearest) + sorting.thickness < f64::from(own.nearest);
+        let others = &others[..others.partition_point(begins_before)];
+        [deep, &others[others.partition_point(ends_before)..]]
     }
 
     /// The box of a segment's image.
@@ -750,8 +816,7 @@ impl Visitor {
         index.levels.iter().rev().filter(|level| level.used).any(|level| {
             index.any_cell(level, segment, bounds, |cell| {
                 let cell = cell as usize;
-                let range = index.starts[cell] as usize..index.starts[cell + 1] as usize;
-                index.entries[range].iter().any(|entry| {
+                index.entries_near(cell, &own).into_iter().flatten().any(|entry| {
                     if entry.is_apart(&own) {
                         return false;
                     }

@@ -63,13 +63,16 @@ impl<'a> Sides<'a> {
         view: &ViewedScene,
         edge: u32,
     ) -> impl Iterator<Item = (u32, bool)> {
-        let side = if self.sides_are_edges {
-            Some(edge)
-        } else {
-            let [p, q] = view.scene().topology().edge(edge);
-            self.table.find_edge(p, q)
-        };
-        side.into_iter().flat_map(|side| self.along(side))
+        self.side(view, edge).into_iter().flat_map(|side| self.along(side))
+    }
+
+    /// The side that is an edge; some edges of faces without area are none.
+    fn side(&self, view: &ViewedScene, edge: u32) -> Option<u32> {
+        if self.sides_are_edges {
+            return Some(edge);
+        }
+        let [p, q] = view.scene().topology().edge(edge);
+        self.table.find_edge(p, q)
     }
 
     fn along(&self, side: u32) -> impl Iterator<Item = (u32, bool)> {
@@ -80,28 +83,45 @@ impl<'a> Sides<'a> {
         })
     }
 
-    /// The sides at which the number of layers changes, in their order. O(triangles), in parallel.
-    pub(super) fn cutting_edges(&self, view: &ViewedScene) -> Vec<CuttingEdge> {
-        (0..self.table.edges().len() as u32)
+    /// How many of the triangles that count lie on the left and on the right of a side, and one of
+    /// them.
+    fn count(&self, view: &ViewedScene, side: u32) -> ([i32; 2], Option<u32>) {
+        let (mut counts, mut last) = ([0; 2], None);
+        for (triangle, upwards) in self.along(side) {
+            if is_counted(view, triangle) {
+                let turn = view.triangle_turns()[triangle as usize];
+                counts[usize::from((turn == Sign::Positive) != upwards)] += 1;
+                last = Some(triangle);
+            }
+        }
+        (counts, last)
+    }
+
+    /// Whether an edge has exactly one triangle that counts on each side.
+    pub(super) fn is_even(&self, view: &ViewedScene, edge: u32) -> bool {
+        let side = self.side(view, edge);
+        side.is_some_and(|side| self.count(view, side).0 == [1; 2])
+    }
+
+    /// The sides at which the number of layers changes, in their order, and for each vertex whether
+    /// all its sides are even: with one triangle left and right, or none at all.
+    ///
+    /// O(triangles), in parallel.
+    pub(super) fn cutting_edges(&self, view: &ViewedScene) -> (Vec<CuttingEdge>, Vec<bool>) {
+        let uneven: Vec<CuttingEdge> = (0..self.table.edges().len() as u32)
             .into_par_iter()
             .with_min_len(4096)
             .filter_map(|side| {
-                let (mut step, mut last) = (0, None);
-                for (triangle, upwards) in self.along(side) {
-                    let one = match view.triangle_turns()[triangle as usize] {
-                        Sign::Zero => continue,
-                        turn if (turn == Sign::Positive) == upwards => 1,
-                        _ => -1,
-                    };
-                    if is_counted(view, triangle) {
-                        step += one;
-                        last = Some(triangle);
-                    }
-                }
-                let triangle = last.filter(|_| step != 0)?;
-                Some(CuttingEdge { ends: self.table.edge(side), step, triangle })
+                let ([left, right], last) = self.count(view, side);
+                let triangle = last.filter(|_| [left, right] != [1; 2])?;
+                Some(CuttingEdge { ends: self.table.edge(side), step: left - right, triangle })
             })
-            .collect()
+            .collect();
+        let mut is_even = vec![true; view.scene().mesh().positions().len()];
+        for end in uneven.iter().flat_map(|edge| edge.ends) {
+            is_even[end as usize] = false;
+        }
+        (uneven.into_iter().filter(|edge| edge.step != 0).collect(), is_even)
     }
 }
 

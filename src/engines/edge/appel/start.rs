@@ -33,6 +33,17 @@ pub(super) fn covers_beyond(
         Sign::Zero if behind(there) != Sign::Positive => return NONE,
         _ => {}
     }
+    sides_beyond(view, ends, end, triangle)
+}
+
+/// Whether the segment's image just beyond `ends[end]` lies in a triangle's: one for each side.
+fn sides_beyond(view: &ViewedScene, ends: [u32; 2], end: usize, triangle: u32) -> [i32; 2] {
+    const NONE: [i32; 2] = [0; 2];
+    let corners = view.scene().triangles()[triangle as usize];
+    let turn = view.triangle_turns()[triangle as usize];
+    let sight = view.sight();
+    let (here, there) = (ends[end], ends[1 - end]);
+    let is_corner = corners.contains(&here);
     let mut along = None;
     for side in 0..3 {
         let (p, q) = (corners[side], corners[(side + 1) % 3]);
@@ -55,6 +66,28 @@ pub(super) fn covers_beyond(
         Some(side) => side_of(view, ends, corners[(side + 2) % 3]).counts(),
         None => Sides::Both.counts(),
     }
+}
+
+/// Whether the triangles around a vertex lie side by side in the image, once around.
+///
+/// There no triangle covers an edge that leaves the vertex between two others:
+///
+/// ```text
+///      ╲  │  ╱        The number of triangles over a direction is the same for all directions,
+///       ╲ │ ╱         when each edge has one triangle on its left and one on its right (the
+///   ─────[v]─────     vertex is even); so one direction tells whether it is one everywhere.
+///       ╱ │ ╲
+/// ```
+pub(super) fn is_plain(view: &ViewedScene, stars: &Stars, vertex: u32) -> bool {
+    let around = stars.around(vertex);
+    let Some(&first) = around.first() else { return false };
+    let corners = view.scene().triangles()[first as usize];
+    let Some(other) = corners.into_iter().find(|&corner| corner != vertex) else { return false };
+    let mut layers = [0; 2];
+    for &triangle in around {
+        add(&mut layers, sides_beyond(view, [vertex, other], 0, triangle));
+    }
+    layers == [1; 2]
 }
 
 /// How many of the triangles that have `ends[end]` as a corner cover the segment just beyond it.
