@@ -115,6 +115,10 @@ pub fn draw(
     stats.engine = engine;
     stats.drawn_edges = view.drawn().len();
     stats.counts.candidate_pairs = counts.candidate_pairs;
+    stats.counts.contour_crossings = counts.contour_crossings;
+    stats.counts.fallback_edges = counts.fallback_edges;
+    stats.counts.checksum_failures = counts.checksum_failures;
+    stats.counts.sight_lines = counts.sight_lines;
     stats.counts.exact_predicates = view.sight().n_exact();
     timed(&mut stats.seconds.strokes, || {
         let mut chaining = ChainOptions {

@@ -65,6 +65,10 @@ pub struct Counts {
     pub contour_crossings: u64,
     /// Edges that an engine handed to a more careful one.
     pub fallback_edges: u64,
+    /// Edges whose counts contradict others; anything but zero is a fault of the program.
+    pub checksum_failures: u64,
+    /// Sight lines along which all layers were counted.
+    pub sight_lines: u64,
 }
 
 /// Does `work` and adds its wall time to `seconds`.

@@ -62,9 +62,18 @@ impl Topology {
     ///
     /// The uses of an edge are in the order of their faces. O(corners), in parallel.
     pub fn new(mesh: &Mesh) -> Self {
-        let corners = mesh.corners();
-        let face_starts = mesh.face_starts();
-        let n_vertices = mesh.positions().len();
+        Self::of_faces(mesh.corners(), mesh.face_starts(), mesh.positions().len())
+    }
+
+    /// The same for bare triangles: their sides, each with the triangles along it.
+    ///
+    /// Corner `3 t + i` is the `i`-th of triangle `t`.
+    pub fn of_triangles(triangles: &[[u32; 3]], n_vertices: usize) -> Self {
+        let starts: Vec<u32> = (0..=triangles.len() as u32).map(|t| 3 * t).collect();
+        Self::of_faces(triangles.as_flattened(), &starts, n_vertices)
+    }
+
+    fn of_faces(corners: &[u32], face_starts: &[u32], n_vertices: usize) -> Self {
         let n_parts = rayon::current_num_threads().max(1);
         let vertices_per_part = n_vertices.div_ceil(n_parts).max(1);
 

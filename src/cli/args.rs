@@ -285,6 +285,7 @@ enum Hidden {
 enum EngineName {
     Auto,
     Roberts,
+    Appel,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -430,6 +431,7 @@ impl LineArgs {
             engine: match self.engine {
                 EngineName::Auto => Engine::Auto,
                 EngineName::Roberts => Engine::Roberts,
+                EngineName::Appel => Engine::Appel,
             },
             contact_tolerance: self.contact_tolerance,
             shortest_stroke_mm: self.shortest_stroke,

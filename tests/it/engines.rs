@@ -12,7 +12,7 @@ use hiddenline::scene::Scene;
 use hiddenline::strokes::StrokeKind;
 use hiddenline::view::{Camera, Projection};
 
-fn mesh(scene: &TestScene) -> Mesh {
+pub(crate) fn mesh(scene: &TestScene) -> Mesh {
     let mut soup = PolygonSoup {
         positions: scene.positions.iter().map(|&p| DVec3::from(p)).collect(),
         ..PolygonSoup::default()
@@ -23,7 +23,7 @@ fn mesh(scene: &TestScene) -> Mesh {
     Mesh::new(soup).unwrap().0
 }
 
-fn camera(scene: &TestScene) -> Camera {
+pub(crate) fn camera(scene: &TestScene) -> Camera {
     let sight = &scene.sight;
     let projection = match sight.near {
         Some(near) => Projection::Perspective { fov_deg: 40.0, near },
@@ -41,7 +41,8 @@ pub(crate) fn solve_with(
 ) -> Vec<(StrokeKind, EngineEdge)> {
     let built = Scene::new(mesh(scene));
     let view = ViewedScene::new(&built, &camera(scene), lines, 30.0);
-    let (visibility, _, _) = solve(&view, engine, settings);
+    let (visibility, counts, _) = solve(&view, engine, settings);
+    assert_eq!((counts.checksum_failures, counts.fallback_edges), (0, 0), "{}", scene.name);
     assert_eq!(visibility.len(), view.drawn().len());
     let position = |v: u32| built.mesh().positions()[v as usize].to_array();
     view.drawn()
@@ -71,7 +72,8 @@ fn all_edges(scene: &TestScene, engine: Engine) -> Option<Vec<EngineEdge>> {
 }
 
 /// All engines by name.
-pub(crate) const ALL: [(&str, Solve); 2] = [("roberts", roberts), ("all pairs", all_pairs)];
+pub(crate) const ALL: [(&str, Solve); 3] =
+    [("roberts", roberts), ("all pairs", all_pairs), ("appel", appel)];
 
 /// Roberts with its index over the image.
 pub(crate) fn roberts(scene: &TestScene) -> Option<Vec<EngineEdge>> {
@@ -81,6 +83,11 @@ pub(crate) fn roberts(scene: &TestScene) -> Option<Vec<EngineEdge>> {
 /// Roberts with all pairs.
 pub(crate) fn all_pairs(scene: &TestScene) -> Option<Vec<EngineEdge>> {
     all_edges(scene, Engine::AllPairs)
+}
+
+/// Appel's quantitative invisibility.
+pub(crate) fn appel(scene: &TestScene) -> Option<Vec<EngineEdge>> {
+    all_edges(scene, Engine::Appel)
 }
 
 /// Compares `n` random scenes and reports the smallest that differs.
@@ -152,6 +159,11 @@ fn roberts_hides_as_the_truth_says() {
 }
 
 #[test]
+fn appel_hides_as_the_truth_says() {
+    hides_as_the_truth_says(appel, 50_000);
+}
+
+#[test]
 fn all_pairs_hide_as_the_truth_says() {
     hides_as_the_truth_says(all_pairs, 10_000);
 }
@@ -165,12 +177,15 @@ fn drawings_hide_as_the_truth_says_without_counting() {
             edge.pieces.iter_mut().for_each(|p| p.qi = p.qi.min(1));
         }
         let settings = Settings { find_doubled: true, ..Settings::default() };
-        let drawn = solve_with(scene, Engine::Roberts, LineSelection::all_edges(), &settings);
-        let mut spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
-        for span in spans.iter_mut().flat_map(|e| &mut e.spans) {
-            span.qi = span.qi.min(1);
+        for engine in [Engine::Roberts, Engine::Appel] {
+            let drawn = solve_with(scene, engine, LineSelection::all_edges(), &settings);
+            let mut spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
+            for span in spans.iter_mut().flat_map(|e| &mut e.spans) {
+                span.qi = span.qi.min(1);
+            }
+            compare(&scene.sight, &flat, &spans).map_err(|e| format!("{engine:?}: {e}"))?;
         }
-        compare(&scene.sight, &flat, &spans).map(|_| ())
+        Ok(())
     });
 }
 
@@ -184,10 +199,13 @@ fn contact_within_the_tolerance_hides_nothing() {
             let Ok(edges) = truth(&scene.positions, &scene.faces, &scene.sight, of_truth) else {
                 continue;
             };
-            let drawn = solve_with(&scene, Engine::Roberts, LineSelection::all_edges(), &settings);
-            let spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
-            compare(&scene.sight, &edges, &spans)
-                .unwrap_or_else(|e| panic!("{}, tolerance {tolerance}: {e}", scene.name));
+            for engine in [Engine::Roberts, Engine::Appel] {
+                let drawn = solve_with(&scene, engine, LineSelection::all_edges(), &settings);
+                let spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
+                compare(&scene.sight, &edges, &spans).unwrap_or_else(|e| {
+                    panic!("{engine:?}, {}, tolerance {tolerance}: {e}", scene.name)
+                });
+            }
         }
     }
 }

@@ -313,4 +313,5 @@ macro_rules! laws {
 
 laws!(oracle, super::by_the_oracle);
 laws!(roberts, crate::engines::roberts);
+laws!(appel, crate::engines::appel);
 laws!(all_pairs, crate::engines::all_pairs);

@@ -47,39 +47,93 @@ const MIN_COVER_SINE: f64 = 0.05;
 
 /// A box in the image and the range of depths in it, rounded outwards.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+pub(super) struct Bounds {
     low: DVec2,
     high: DVec2,
     nearest: f64,
     farthest: f64,
 }
 
-/// A triangle in a cell, with its box rounded outwards, so that most need not be looked up.
+impl Bounds {
+    /// The same box with depths up to `farthest`.
+    #[must_use]
+    pub(super) fn reaching(self, farthest: f64) -> Self {
+        Self { farthest, ..self }
+    }
+
+    /// The same box with all depths up to its farthest.
+    #[must_use]
+    pub(super) fn from_eye(self) -> Self {
+        Self { nearest: f64::NEG_INFINITY, ..self }
+    }
+
+    /// The largest depth.
+    pub(super) fn farthest(&self) -> f64 {
+        self.farthest
+    }
+
+    /// Whether the boxes share a point of the image.
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+}
+
+/// Where an item goes in an index.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Place {
+    /// It is of no interest.
+    Nowhere,
+    /// It is offered to every segment by other means: see [`ImageIndex::everywhere`].
+    Everywhere,
+    /// Into the cells that its box touches.
+    Within(Bounds),
+}
+
+/// An item in a cell, with its box rounded outwards, so that most need not be looked up.
 #[derive(Debug, Clone, Copy, Default)]
 struct Entry {
-    triangle: u32,
+    item: u32,
     low: [f32; 2],
     high: [f32; 2],
     nearest: f32,
+    farthest: f32,
 }
 
 impl Entry {
-    fn new(triangle: u32, bounds: &Bounds) -> Self {
+    fn new(item: u32, bounds: &Bounds) -> Self {
         Self {
-            triangle,
+            item,
             low: bounds.low.to_array().map(rounded_down),
             high: bounds.high.to_array().map(rounded_up),
             nearest: rounded_down(bounds.nearest),
+            farthest: rounded_up(bounds.farthest),
         }
     }
 
     #[inline]
-    fn is_apart(&self, segment: &Self, farthest: f32) -> bool {
+    fn is_apart(&self, segment: &Self) -> bool {
         self.low[0] > segment.high[0]
             || self.low[1] > segment.high[1]
             || self.high[0] < segment.low[0]
             || self.high[1] < segment.low[1]
-            || self.nearest > farthest
+            || self.nearest > segment.farthest
+            || self.farthest < segment.nearest
+    }
+}
+
+impl Sorting {
+    fn sort(entries: &mut [Entry]) -> Self {
+        let thickness = |e: &Entry| f64::from(e.farthest) - f64::from(e.nearest);
+        let finite = || entries.iter().map(thickness).filter(|t| t.is_finite());
+        let average = finite().sum::<f64>() / finite().count().max(1) as f64;
+        let is_deep = |e: &Entry| !(thickness(e) <= DEEP * average);
+        entries.sort_unstable_by(|a, b| {
+            let by_depth = a.nearest.total_cmp(&b.nearest).then(a.item.cmp(&b.item));
+            is_deep(b).cmp(&is_deep(a)).then(by_depth)
+        });
+        let n_deep = entries.partition_point(is_deep);
+        let thickest = entries[n_deep..].iter().map(thickness).fold(0.0, f64::max);
+        Self { n_deep: n_deep as u32, thickness: thickest.next_up() }
     }
 }
 
@@ -93,27 +147,27 @@ fn rounded_up(x: f64) -> f32 {
     if f64::from(rounded) < x { rounded.next_up() } else { rounded }
 }
 
-/// How many triangles make one piece of parallel work.
+/// How many items make one piece of parallel work.
 const CHUNK: usize = 1 << 14;
 
-/// A triangle on its way into the cells of a level.
+/// An item on its way into the cells of a level.
 #[derive(Debug, Clone, Copy)]
 struct Placed {
-    triangle: u32,
+    item: u32,
     level: u32,
     bounds: Bounds,
 }
 
 /// Everything about the view that rounding outwards needs.
 #[derive(Debug, Clone, Copy)]
-struct Rounding {
+pub(super) struct Rounding {
     /// In orthographic projection the error does not depend on the place.
     flat_error: Option<f64>,
     depth_error: f64,
 }
 
 impl Rounding {
-    fn new(view: &ViewedScene) -> Self {
+    pub(super) fn new(view: &ViewedScene) -> Self {
         let eye = view.camera().eye();
         let largest = view
             .sight()
@@ -126,11 +180,12 @@ impl Rounding {
     }
 
     /// How far an image coordinate up to `size` in absolute value may be off.
-    fn image_error(&self, size: f64) -> f64 {
+    pub(super) fn image_error(&self, size: f64) -> f64 {
         self.flat_error.unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
     }
 
-    fn bounds<const N: usize>(&self, points: [DVec2; N], depths: [f64; N]) -> Bounds {
+    /// The box of some points of the image with their depths.
+    pub(super) fn bounds<const N: usize>(&self, points: [DVec2; N], depths: [f64; N]) -> Bounds {
         let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
         let error = self.image_error(low.abs().max(high.abs()).element_sum());
@@ -140,6 +195,26 @@ impl Rounding {
             nearest: depths.iter().copied().fold(f64::INFINITY, f64::min) - self.depth_error,
             farthest: depths.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth_error,
         }
+    }
+
+    /// Where a triangle goes by its image: nowhere when it covers nothing, everywhere when the near
+    /// plane cuts it.
+    pub(super) fn place(&self, view: &ViewedScene, triangle: u32) -> Place {
+        if view.triangle_turns()[triangle as usize] == Sign::Zero {
+            return Place::Nowhere;
+        }
+        let corners = view.scene().triangles()[triangle as usize];
+        if view.near_plane_cuts() {
+            let signs = corners.map(|corner| view.sight().near_distance(corner).1);
+            if signs == [Sign::Negative; 3] {
+                return Place::Nowhere;
+            }
+            if signs.contains(&Sign::Negative) {
+                return Place::Everywhere;
+            }
+        }
+        let points = corners.map(|corner| view.image()[corner as usize]);
+        Place::Within(self.bounds(points.map(ImagePoint::image), points.map(|p| p.depth)))
     }
 }
 
@@ -170,10 +245,24 @@ pub(super) struct ImageIndex {
     entries: Vec<Entry>,
     /// Depth behind which all is hidden, for each cell of all levels; empty when layers count.
     covered_from: Vec<f64>,
-    /// Triangles that the near plane cuts: they are offered to every segment.
+    /// Items to be offered to every segment: triangles that the near plane cuts.
     everywhere: Vec<u32>,
-    n_triangles: usize,
+    n_items: usize,
+    /// For each cell how its entries are sorted; empty when they are not.
+    sorting: Vec<Sorting>,
 }
+
+/// The order of a cell's entries by depth.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sorting {
+    /// How many entries that reach unusually far come first, in no order.
+    n_deep: u32,
+    /// The farthest that any of the others reaches behind its nearest point.
+    thickness: f64,
+}
+
+/// An entry that reaches this many times further than the average of its cell is a deep one.
+const DEEP: f64 = 4.0;
 
 impl ImageIndex {
     /// An index of the triangles that may cover some of `segments`.
@@ -183,9 +272,30 @@ impl ImageIndex {
         settings: &Settings,
     ) -> Self {
         let rounding = Rounding::new(view);
+        // Roberts wants all that is in front, however far.
+        let place = |triangle| match rounding.place(view, triangle) {
+            Place::Within(bounds) => Place::Within(bounds.reaching(f64::INFINITY)),
+            place => place,
+        };
         let n_triangles = view.scene().triangles().len();
+        let covers = (!settings.count_layers).then_some(settings.contact_tolerance);
+        Self::of_items(view, segments, n_triangles, covers, place)
+    }
+
+    /// An index of the items numbered below `n_items` that may lie near or in front of some of
+    /// `segments`.
+    ///
+    /// With `covers`, a contact tolerance, items behind cells that one triangle covers are left out.
+    pub(super) fn of_items<'s>(
+        view: &ViewedScene,
+        segments: impl Iterator<Item = &'s Segment> + Clone,
+        n_items: usize,
+        covers: Option<f64>,
+        place: impl Fn(u32) -> Place + Sync,
+    ) -> Self {
+        let rounding = Rounding::new(view);
         let n_segments = segments.clone().count();
-        let (origin, levels) = levels(&rounding, segments.clone(), n_triangles);
+        let (origin, levels) = levels(&rounding, segments.clone(), n_items);
         let n_cells = levels.last().map_or(0, |level| level.first + level.columns * level.rows);
         let coarsest = levels[levels.len() - 1];
         let size = dvec2(f64::from(coarsest.columns), f64::from(coarsest.rows)) * coarsest.cell;
@@ -198,19 +308,70 @@ impl ImageIndex {
             entries: Vec::new(),
             covered_from: Vec::new(),
             everywhere: Vec::new(),
-            n_triangles,
+            n_items,
+            sorting: Vec::new(),
         };
         if n_segments == 0 {
             return index;
         }
-        // Marking pays when few segments are drawn: most triangles then lie far from all of them.
-        let marks = (n_segments < n_triangles / 4).then(|| index.mark(segments));
-        let near = index.near_segments(view, marks.as_deref());
-        if !settings.count_layers {
-            index.covered_from = index.find_covered_cells(view, &near, settings.contact_tolerance);
+        // Marking pays when few segments are drawn: most items then lie far from all of them.
+        let marks = (n_segments < n_items / 4).then(|| index.mark(segments));
+        let near = index.near_segments(marks.as_deref(), place);
+        if let Some(contact_tolerance) = covers {
+            index.covered_from = index.find_covered_cells(view, &near, contact_tolerance);
         }
         index.insert(&near, marks.as_deref());
         index
+    }
+
+    /// Sorts the items of each cell by depth, so that segments skip those well in front of them.
+    ///
+    /// ```text
+    ///   nearest    ├──┤ ├────┤  ├──┤ ├─────┤  ├──┤  farthest
+    ///                          ├──┤ segment
+    ///                  └────────┘ thickness: what begins before this ends before the segment
+    /// ```
+    #[must_use]
+    pub(super) fn sorted_by_depth(mut self) -> Self {
+        let mut cells: Vec<&mut [Entry]> = Vec::with_capacity(self.starts.len());
+        let mut rest = &mut self.entries[..];
+        for pair in self.starts.windows(2) {
+            let (cell, others) = rest.split_at_mut((pair[1] - pair[0]) as usize);
+            cells.push(cell);
+            rest = others;
+        }
+        self.sorting = cells.into_par_iter().with_min_len(1024).map(Sorting::sort).collect();
+        self
+    }
+
+    /// The entries of a cell that may be within a range of depths, in two runs.
+    #[inline]
+    fn entries_near(&self, cell: usize, own: &Entry) -> [&[Entry]; 2] {
+        let all = &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        let Some(sorting) = self.sorting.get(cell).filter(|_| !all.is_empty()) else {
+            return [all, &[]];
+        };
+        let (deep, others) = all.split_at(sorting.n_deep as usize);
+        let begins_before = |e: &Entry| e.nearest <= own.farthest;
+        let ends_before =
+            |e: &Entry| f64::from(e.nearest) + sorting.thickness < f64::from(own.nearest);
+        let others = &others[..others.partition_point(begins_before)];
+        [deep, &others[others.partition_point(ends_before)..]]
+    }
+
+    /// The box of a segment's image.
+    pub(super) fn bounds_of(&self, segment: &Segment) -> Bounds {
+        self.rounding.bounds(segment.image, segment.depth)
+    }
+
+    /// The box of the images of some points in front of the eye.
+    pub(super) fn bounds<const N: usize>(&self, points: [ImagePoint; N]) -> Bounds {
+        self.rounding.bounds(points.map(ImagePoint::image), points.map(|p| p.depth))
+    }
+
+    /// The items that were placed everywhere.
+    pub(super) fn everywhere(&self) -> &[u32] {
+        &self.everywhere
     }
 
     /// Whether every cell along the segment is covered in front of all of it.
@@ -245,25 +406,28 @@ impl ImageIndex {
         marks
     }
 
-    /// The triangles that lie in a cell with a segment, in their order, and those that the near
-    /// plane cuts.
-    fn near_segments(&mut self, view: &ViewedScene, marks: Option<&[f64]>) -> Vec<Vec<Placed>> {
-        let triangles = view.scene().triangles();
+    /// The items that lie in a cell with a segment, in their order; notes those to be offered
+    /// everywhere.
+    fn near_segments(
+        &mut self,
+        marks: Option<&[f64]>,
+        place: impl Fn(u32) -> Place + Sync,
+    ) -> Vec<Vec<Placed>> {
         let this = &*self;
         type Part = (Vec<Placed>, Vec<u32>);
-        let parts: Vec<Part> = (0..triangles.len().div_ceil(CHUNK))
+        let parts: Vec<Part> = (0..this.n_items.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let (mut near, mut everywhere) = (Vec::new(), Vec::new());
-                let last = ((chunk + 1) * CHUNK).min(triangles.len());
-                for triangle in (chunk * CHUNK) as u32..last as u32 {
-                    if view.triangle_turns()[triangle as usize] == Sign::Zero {
-                        continue;
-                    }
-                    let corners = triangles[triangle as usize];
-                    let Some(bounds) = this.triangle_bounds(view, corners) else {
-                        everywhere.push(triangle);
-                        continue;
+                let last = ((chunk + 1) * CHUNK).min(this.n_items);
+                for item in (chunk * CHUNK) as u32..last as u32 {
+                    let bounds = match place(item) {
+                        Place::Nowhere => continue,
+                        Place::Everywhere => {
+                            everywhere.push(item);
+                            continue;
+                        }
+                        Place::Within(bounds) => bounds,
                     };
                     let Some(level) = this.level_of(&bounds) else { continue };
                     let mut is_near = false;
@@ -271,7 +435,7 @@ impl ImageIndex {
                         is_near |= marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
                     });
                     if is_near {
-                        near.push(Placed { triangle, level: level as u32, bounds });
+                        near.push(Placed { item, level: level as u32, bounds });
                     }
                 }
                 (near, everywhere)
@@ -282,15 +446,15 @@ impl ImageIndex {
         near
     }
 
-    /// Puts the triangles into their cells, leaving out those that are behind everything there.
+    /// Puts the items into their cells, leaving out those that are behind everything there.
     fn insert(&mut self, near: &[Vec<Placed>], marks: Option<&[f64]>) {
         let this = &*self;
         let parts: Vec<Vec<(u32, Entry)>> = near
             .par_iter()
             .map(|near| {
                 let mut entries = Vec::with_capacity(2 * near.len());
-                for Placed { triangle, level, bounds } in near {
-                    let entry = Entry::new(*triangle, bounds);
+                for Placed { item, level, bounds } in near {
+                    let entry = Entry::new(*item, bounds);
                     this.for_box(&this.levels[*level as usize], bounds, |cell| {
                         let wanted = marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
                         let covered_from = this.covered_from.get(cell as usize);
@@ -322,25 +486,6 @@ impl ImageIndex {
             let end = level.first + level.columns * level.rows;
             level.used = self.starts[level.first as usize] < self.starts[end as usize];
         }
-    }
-
-    /// The box of a triangle's image; `None` when the near plane cuts it.
-    fn triangle_bounds(&self, view: &ViewedScene, corners: [u32; 3]) -> Option<Bounds> {
-        let points = corners.map(|corner| view.image()[corner as usize]);
-        if view.near_plane_cuts()
-            && corners.iter().any(|&c| view.sight().near_distance(c).1 == Sign::Negative)
-        {
-            let all_behind =
-                corners.iter().all(|&c| view.sight().near_distance(c).1 == Sign::Negative);
-            // Nothing of it is left: an empty box.
-            return all_behind.then_some(Bounds {
-                low: DVec2::INFINITY,
-                high: DVec2::NEG_INFINITY,
-                nearest: f64::INFINITY,
-                farthest: f64::NEG_INFINITY,
-            });
-        }
-        Some(self.rounding.bounds(points.map(ImagePoint::image), points.map(|p| p.depth)))
     }
 
     /// The finest level whose cells are at least as large as the box; `None` for an empty box or
@@ -483,7 +628,7 @@ impl ImageIndex {
         mut f: impl FnMut(u32, f64),
     ) {
         let bounds = &placed.bounds;
-        let corners = view.scene().triangles()[placed.triangle as usize];
+        let corners = view.scene().triangles()[placed.item as usize];
         let Some(sine) = sine_of_sight(view, corners) else {
             return;
         };
@@ -572,7 +717,7 @@ fn for_parts(fine: &Level, coarse: &Level, mut f: impl FnMut(u32, [Option<u32>; 
 fn levels<'s>(
     rounding: &Rounding,
     segments: impl Iterator<Item = &'s Segment>,
-    n_triangles: usize,
+    n_items: usize,
 ) -> (DVec2, Vec<Level>) {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for segment in segments {
@@ -591,7 +736,7 @@ fn levels<'s>(
             vec![Level { cell: 1.0, inverse: 1.0, columns: 1, rows: 1, first: 0, used: false }],
         );
     }
-    let n_cells = (n_triangles as f64 / TRIANGLES_PER_CELL).clamp(FINEST_CELLS.0, FINEST_CELLS.1);
+    let n_cells = (n_items as f64 / TRIANGLES_PER_CELL).clamp(FINEST_CELLS.0, FINEST_CELLS.1);
     // A flat image gets cells as long as its longer side asks for.
     let cell = (size.x * size.y / n_cells).sqrt().max(size.max_element() / n_cells);
     let mut level = Level {
@@ -617,10 +762,10 @@ fn levels<'s>(
     (low, levels)
 }
 
-/// Visits each triangle near a segment once; work space of one thread.
+/// Visits each item near a segment once; work space of one thread.
 #[derive(Debug)]
 pub(super) struct Visitor {
-    /// The number of the last segment that was offered each triangle.
+    /// The number of the last segment that was offered each item.
     seen: Vec<u32>,
     segment: u32,
 }
@@ -628,7 +773,7 @@ pub(super) struct Visitor {
 impl Visitor {
     /// Work space for queries of `index`.
     pub(super) fn new(index: Option<&ImageIndex>) -> Self {
-        Self { seen: vec![0; index.map_or(0, |index| index.n_triangles)], segment: 0 }
+        Self { seen: vec![0; index.map_or(0, |index| index.n_items)], segment: 0 }
     }
 
     /// Whether `test` holds for any triangle that may cover some of `segment`.
@@ -641,45 +786,57 @@ impl Visitor {
         segment: &Segment,
         mut test: impl FnMut(u32) -> bool,
     ) -> bool {
+        if index.everywhere.iter().any(|&triangle| test(triangle)) {
+            return true;
+        }
+        let bounds = index.rounding.bounds(segment.image, segment.depth);
+        let corners = |triangle: u32| view.scene().triangles()[triangle as usize];
+        self.any_within(index, view, segment, &bounds, corners, test)
+    }
+
+    /// Whether `test` holds for any item of the cells whose box meets `bounds`, the segment's or a
+    /// part of it, and whose `corners` are not all on one side of the segment.
+    pub(super) fn any_within<const N: usize>(
+        &mut self,
+        index: &ImageIndex,
+        view: &ViewedScene,
+        segment: &Segment,
+        bounds: &Bounds,
+        corners: impl Fn(u32) -> [u32; N],
+        mut test: impl FnMut(u32) -> bool,
+    ) -> bool {
         self.segment = self.segment.wrapping_add(1);
         if self.segment == 0 {
             self.seen.fill(0);
             self.segment = 1;
         }
-        if index.everywhere.iter().any(|&triangle| test(triangle)) {
-            return true;
-        }
-        let bounds = index.rounding.bounds(segment.image, segment.depth);
-        let separation = Separation::new(index, segment, &bounds);
-        let own = Entry::new(0, &bounds);
-        let farthest = rounded_up(bounds.farthest);
+        let separation = Separation::new(index, segment, bounds);
+        let own = Entry::new(0, bounds);
         let (seen, number) = (&mut self.seen, self.segment);
         index.levels.iter().rev().filter(|level| level.used).any(|level| {
-            index.any_cell(level, segment, &bounds, |cell| {
+            index.any_cell(level, segment, bounds, |cell| {
                 let cell = cell as usize;
-                let range = index.starts[cell] as usize..index.starts[cell + 1] as usize;
-                index.entries[range].iter().any(|entry| {
-                    if entry.is_apart(&own, farthest) {
+                index.entries_near(cell, &own).into_iter().flatten().any(|entry| {
+                    if entry.is_apart(&own) {
                         return false;
                     }
-                    let triangle = entry.triangle;
-                    let last = &mut seen[triangle as usize];
+                    let last = &mut seen[entry.item as usize];
                     if *last == number {
                         return false;
                     }
                     *last = number;
-                    let corners = view.scene().triangles()[triangle as usize];
+                    let corners = corners(entry.item);
                     let points = corners.map(|corner| view.image()[corner as usize]);
-                    !separation.apart(corners, points) && test(triangle)
+                    !separation.apart(corners, points) && test(entry.item)
                 })
             })
         })
     }
 }
 
-/// A quick test that a triangle's image lies to one side of a segment's line.
+/// A quick test that an item's image lies to one side of a segment's line.
 ///
-/// A corner that is one of the segment's own ends lies on the line and does not count: a triangle
+/// A corner that is one of the segment's own ends lies on the line and does not count: an item
 /// that meets the line there only covers no more than a point.
 struct Separation<'i> {
     rounding: &'i Rounding,
@@ -702,7 +859,7 @@ impl<'i> Separation<'i> {
     }
 
     #[inline]
-    fn apart(&self, corners: [u32; 3], points: [ImagePoint; 3]) -> bool {
+    fn apart<const N: usize>(&self, corners: [u32; N], points: [ImagePoint; N]) -> bool {
         let points = points.map(ImagePoint::image);
         let offsets = points.map(|p| p - self.start);
         let farthest = points.iter().fold(DVec2::ZERO, |far, p| far.max(p.abs()));
@@ -718,6 +875,6 @@ impl<'i> Separation<'i> {
                 right &= side < -slack;
             }
         }
-        left || right
+        (left || right) && N > 0
     }
 }

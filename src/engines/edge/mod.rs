@@ -3,6 +3,7 @@
 //! | engine | asks of an edge | cost |
 //! |---|---|---|
 //! | [`roberts`] | every triangle whose image is near | edges × triangles near them |
+//! | [`appel`] | contours in front, triangles near in space | edges × contours near them |
 //!
 //! All of them answer the same question with the same result, to the last interval:
 //!
@@ -11,6 +12,7 @@
 //! where the segment's image runs along one of its borders; there it covers only the side on which
 //! its third vertex lies. A point is hidden when both its sides are covered.
 
+pub mod appel;
 pub mod roberts;
 
 mod index;
@@ -42,6 +44,8 @@ pub enum Engine {
     Auto,
     /// Every edge against the triangles near its image.
     Roberts,
+    /// Counts carried along edges, changed at contours: fast where many edges are drawn.
+    Appel,
     /// Every edge against every triangle: slow, and so simple that it checks the others.
     AllPairs,
 }
@@ -56,6 +60,7 @@ pub fn solve(
 ) -> (Visibility, Counts, &'static str) {
     let (name, (visibility, counts)) = match engine {
         Engine::Auto | Engine::Roberts => ("roberts", roberts::solve(view, settings)),
+        Engine::Appel => ("appel", appel::solve(view, settings)),
         Engine::AllPairs => ("all-pairs", roberts::solve_all_pairs(view, settings)),
     };
     (visibility, counts, name)
@@ -66,4 +71,12 @@ pub fn solve(
 pub struct Counts {
     /// Pairs of an edge and a triangle (or contour edge) that were tested.
     pub candidate_pairs: u64,
+    /// Pairs of an edge and a contour edge among them.
+    pub contour_crossings: u64,
+    /// Edges handed to [`roberts`].
+    pub fallback_edges: u64,
+    /// Edges whose counts contradict others: faults of the program, always zero.
+    pub checksum_failures: u64,
+    /// Sight lines along which all layers were counted.
+    pub sight_lines: u64,
 }

@@ -39,9 +39,17 @@ const CHUNK: usize = 512;
 /// Expected cost: the triangles, once, for the index, and for each edge the triangles near its
 /// image that no single nearer triangle hides.
 pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
-    let segments = segments(view);
+    solve_segments(view, settings, &segments(view))
+}
+
+/// Finds the spans of some segments of `view`, in their order.
+pub(super) fn solve_segments(
+    view: &ViewedScene,
+    settings: &Settings,
+    segments: &[Option<Segment>],
+) -> (Visibility, Counts) {
     let index = ImageIndex::new(view, segments.iter().flatten(), settings);
-    run(view, settings, &segments, Some(&index))
+    run(view, settings, segments, Some(&index))
 }
 
 /// Finds the same spans by testing every edge against every triangle. O(edges × triangles).
@@ -49,7 +57,8 @@ pub fn solve_all_pairs(view: &ViewedScene, settings: &Settings) -> (Visibility, 
     run(view, settings, &segments(view), None)
 }
 
-fn segments(view: &ViewedScene) -> Vec<Option<Segment>> {
+/// The drawn edges as segments.
+pub(super) fn segments(view: &ViewedScene) -> Vec<Option<Segment>> {
     view.drawn().par_iter().map(|drawn| Segment::new(view, drawn.edge)).collect()
 }
 

@@ -28,6 +28,17 @@ pub(super) enum Sides {
     Right,
 }
 
+impl Sides {
+    /// One layer on each of these sides, left and right.
+    pub(super) fn counts(self) -> [i32; 2] {
+        match self {
+            Self::Both => [1, 1],
+            Self::Left => [1, 0],
+            Self::Right => [0, 1],
+        }
+    }
+}
+
 /// The part of a segment that a triangle covers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cover {
@@ -195,7 +206,7 @@ pub(super) fn shadow(
 }
 
 /// The side of the segment's image on which a vertex lies that is not on it.
-fn side_of(view: &ViewedScene, ends: [u32; 2], vertex: u32) -> Sides {
+pub(super) fn side_of(view: &ViewedScene, ends: [u32; 2], vertex: u32) -> Sides {
     match view.sight().turn(ends[0], ends[1], vertex) {
         Sign::Positive => Sides::Left,
         _ => Sides::Right,

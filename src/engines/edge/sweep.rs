@@ -1,7 +1,7 @@
 //! From the covered parts of one segment to its spans: a sweep along the parameter.
 
 use super::segment::Segment;
-use super::shadow::{Cover, Sides};
+use super::shadow::Cover;
 use crate::predicates::{Cut, Sight};
 use crate::visibility::Span;
 use std::cmp::Ordering;
@@ -9,6 +9,10 @@ use std::cmp::Ordering;
 /// Collects what covers or doubles one segment, then sweeps it; reused from segment to segment.
 #[derive(Debug, Default)]
 pub(super) struct Sweep {
+    /// Counts at the segment's first point, as in [`Event::change`].
+    start: [i32; 3],
+    /// The smallest number of layers on a side of any span.
+    lowest: i32,
     events: Vec<Event>,
     spans: Vec<Span>,
 }
@@ -24,17 +28,29 @@ struct Event {
 impl Sweep {
     /// Forgets everything collected.
     pub(super) fn clear(&mut self) {
+        self.start = [0; 3];
         self.events.clear();
+    }
+
+    /// The smallest number of layers on either side of any of the last spans.
+    pub(super) fn lowest(&self) -> i32 {
+        self.lowest
+    }
+
+    /// Lets so many layers lie on the left and right of where the segment begins.
+    pub(super) fn start_with(&mut self, [left, right]: [i32; 2]) {
+        self.start = [left, right, 0];
+    }
+
+    /// Adds a change of the numbers of layers on the left and right.
+    pub(super) fn add_change(&mut self, at: Cut, [left, right]: [i32; 2]) {
+        self.events.push(Event { at, change: [left, right, 0] });
     }
 
     /// Adds a part that a triangle covers.
     pub(super) fn add_cover(&mut self, cover: &Cover) {
-        let change = match cover.sides {
-            Sides::Both => [1, 1, 0],
-            Sides::Left => [1, 0, 0],
-            Sides::Right => [0, 1, 0],
-        };
-        self.add(cover, change);
+        let [left, right] = cover.sides.counts();
+        self.add(cover, [left, right, 0]);
     }
 
     /// Adds a part that another edge draws.
@@ -67,10 +83,12 @@ impl Sweep {
         // Equal cuts may come in any order: their changes are added before a span begins.
         self.events.sort_unstable_by(|a, b| sight.cut_order(ends, &a.at, &b.at));
         self.spans.clear();
-        let mut counts = [0i32; 3];
+        let mut counts = self.start;
+        self.lowest = 0;
         let mut start = segment.from;
         for event in &self.events {
             if sight.cut_order(ends, &start, &event.at) == Ordering::Less {
+                self.lowest = self.lowest.min(counts[0]).min(counts[1]);
                 push(&mut self.spans, &start, &event.at, counts, count_layers);
                 start = event.at;
             }
@@ -79,6 +97,7 @@ impl Sweep {
             }
         }
         if sight.cut_order(ends, &start, &segment.to) == Ordering::Less || self.spans.is_empty() {
+            self.lowest = self.lowest.min(counts[0]).min(counts[1]);
             push(&mut self.spans, &start, &segment.to, counts, count_layers);
         }
         &self.spans

@@ -1,0 +1,456 @@
+//! Appel: the number of layers is carried along edges and changes only at cutting edges.
+//!
+//! A. Appel, "The notion of quantitative invisibility and the machine rendering of solids", ACM
+//! National Conference 1967. The quantitative invisibility of a point is the number of triangles
+//! that cover it. Along a drawn edge it changes only where the edge passes behind a nearer
+//! [cutting edge](cutting) or pierces a triangle:
+//!
+//! ```text
+//!    qi 0    ┆   qi 2  ┆   qi 1  ┆   qi 0
+//!   ●────────┆┄┄┄┄┄┄┄┄┄┆┄┄┄┄┄┄┄┄┄┆─────────●
+//!   A        silhouette    boundary        B
+//! ```
+//!
+//! So drawn edges meet cutting edges, of which there are few, and not all triangles. Which number
+//! an edge begins with is carried over from the edges that meet it, as follows. Let `qi₀(v)` be the
+//! number of triangles that cover a vertex without touching it. A vertex is *regular* when its image
+//! lies on no nearer cutting edge's and the vertex itself on no triangle but those it is a corner
+//! of. Then `qi₀(v)` holds all around it, and an edge leaves it with `qi₀(v)` plus the triangles
+//! around `v` that cover the edge just beyond. Any edge between two regular vertices therefore tells
+//! the difference between their numbers; one sight line gives a whole connected set its own. Only an
+//! edge between two irregular vertices needs a sight line for itself.
+//!
+//! Differs from the paper in:
+//! * all triangles count, front and back, so that meshes may be open, non-manifold or badly wound;
+//! * each of an edge's two sides has its own number (see [`trace`]), and a side is a path that meets
+//!   no vertex and runs along no edge, so that coincidences in the image are no special case;
+//! * nothing is rounded: crossing, depth and order are signs of [`crate::predicates`], and the two
+//!   ways by which a number can reach a vertex must give the same. A difference would be a fault of
+//!   the program; it is counted, and [`roberts`] does the edges that it concerns.
+//!
+//! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
+//! [`Settings::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
+//! tolerance says does not cover is taken away from the edge at last.
+
+mod cutting;
+mod doubled;
+mod propagate;
+mod start;
+mod trace;
+
+use super::index::{ImageIndex, Place, Rounding};
+use super::roberts;
+use super::segment::Segment;
+use super::shadow::{Shadow, shadow};
+use super::sweep::Sweep;
+use super::{Counts, Settings};
+use crate::classify::ViewedScene;
+use crate::predicates::CutPlane;
+use crate::visibility::Visibility;
+use cutting::{Sides, Stars};
+use doubled::Partners;
+use propagate::{Base, Levels};
+use rayon::prelude::*;
+use start::{is_plain, layers_beyond, local_layers};
+use std::sync::Mutex;
+use trace::{Change, Surroundings, Trace, Tracer};
+
+/// How many segments make one piece of parallel work.
+const CHUNK: usize = 512;
+
+/// Finds the spans of all drawn edges of `view`, in their order.
+///
+/// Expected cost: the triangles, once, for the indices; for each edge the cutting edges near its
+/// image and the triangles near it in space; and a few sight lines.
+pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
+    let segments = roberts::segments(view);
+    let sides = Sides::new(view);
+    let (cutting, is_even) = sides.cutting_edges(view);
+    let n_triangles = view.scene().triangles().len();
+    let rounding = Rounding::new(view);
+    let drawn = segments.iter().flatten();
+    let cutting_index = ImageIndex::of_items(view, drawn.clone(), cutting.len(), None, |edge| {
+        let points = cutting[edge as usize].ends.map(|end| view.image()[end as usize]);
+        let bounds = rounding.bounds(points.map(|p| p.image()), points.map(|p| p.depth));
+        Place::Within(bounds.reaching(f64::INFINITY))
+    });
+    let triangle_index = ImageIndex::of_items(view, drawn, n_triangles, None, |triangle| {
+        place_in_space(view, &rounding, triangle, settings.contact_tolerance)
+    })
+    .sorted_by_depth();
+    let around = Surroundings {
+        cutting: &cutting,
+        cutting_index: &cutting_index,
+        triangle_index: &triangle_index,
+        contact_tolerance: settings.contact_tolerance,
+    };
+    let tracers = Tracers::new(&around);
+    let mut is_end = vec![false; view.scene().mesh().positions().len()];
+    for &end in segments.iter().flatten().flat_map(|segment| &segment.ends) {
+        is_end[end as usize] = true;
+    }
+    let stars = Stars::new(view, &is_end);
+    let is_plain = (0..is_even.len() as u32)
+        .into_par_iter()
+        .map(|v| is_even[v as usize] && is_end[v as usize] && is_plain(view, &stars, v))
+        .collect();
+    let neighbors = Neighbors { sides: &sides, stars: &stars, is_plain };
+    let traced: Vec<Chunk> = segments
+        .par_chunks(CHUNK)
+        .map(|segments| {
+            tracers.with(|tracer| Chunk::trace(view, &around, &neighbors, segments, tracer))
+        })
+        .collect();
+
+    let mut starts = Starts::new(view, &segments, &traced);
+    starts.ask_sight_lines(view, &around, &tracers, &segments, &traced);
+    let partners =
+        if settings.find_doubled { Partners::new(view, &segments) } else { Partners::default() };
+    let drawing = Drawing { view, settings, sides: &sides, partners: &partners, starts: &starts };
+    let parts: Vec<(Visibility, Vec<u32>)> = segments
+        .par_chunks(CHUNK)
+        .zip(&traced)
+        .enumerate()
+        .map(|(i, (chunk, traced))| drawing.spans(i * CHUNK, &segments, chunk, traced))
+        .collect();
+
+    let mut visibility = Visibility::default();
+    let mut counts = Counts { checksum_failures: starts.n_failures, ..Counts::default() };
+    let mut failed = Vec::new();
+    for ((part, without_start), traced) in parts.iter().zip(&traced) {
+        visibility.append(part);
+        failed.extend_from_slice(without_start);
+        counts.contour_crossings += traced.trace.crossings_tested;
+        counts.candidate_pairs += traced.trace.crossings_tested + traced.trace.triangles_tested;
+    }
+    counts.fallback_edges = failed.len() as u64;
+    counts.sight_lines = starts.n_sight_lines;
+    if !failed.is_empty() {
+        visibility =
+            replaced_by_roberts(view, settings, &segments, &visibility, &failed, &mut counts);
+    }
+    (visibility, counts)
+}
+
+/// The box of a triangle with all points behind it that are in near contact with its plane.
+fn place_in_space(
+    view: &ViewedScene,
+    rounding: &Rounding,
+    triangle: u32,
+    contact_tolerance: f64,
+) -> Place {
+    match rounding.place(view, triangle) {
+        Place::Within(bounds) if contact_tolerance > 0.0 => {
+            let corners = view.scene().triangles()[triangle as usize];
+            let sight = corners.map(|corner| view.sight().sight_line(corner));
+            let reach = view.sight().triangle_plane(corners).reach(contact_tolerance, sight);
+            Place::Within(bounds.reaching(bounds.farthest() + reach))
+        }
+        place => place,
+    }
+}
+
+/// Work spaces of the threads.
+struct Tracers<'s> {
+    around: &'s Surroundings<'s>,
+    idle: Mutex<Vec<Tracer>>,
+}
+
+impl<'s> Tracers<'s> {
+    fn new(around: &'s Surroundings<'s>) -> Self {
+        Self { around, idle: Mutex::new(Vec::new()) }
+    }
+
+    fn with<T>(&self, work: impl FnOnce(&mut Tracer) -> T) -> T {
+        let idle = self.idle.lock().ok().and_then(|mut idle| idle.pop());
+        let mut tracer = idle.unwrap_or_else(|| Tracer::new(self.around));
+        let result = work(&mut tracer);
+        if let Ok(mut idle) = self.idle.lock() {
+            idle.push(tracer);
+        }
+        result
+    }
+}
+
+/// What is around vertices.
+struct Neighbors<'n> {
+    sides: &'n Sides<'n>,
+    stars: &'n Stars,
+    /// Whether the triangles around a vertex lie side by side, once around.
+    is_plain: Vec<bool>,
+}
+
+impl Neighbors<'_> {
+    /// The layers of triangles around each end of a segment, just beyond it.
+    fn local_layers(&self, view: &ViewedScene, segment: &Segment) -> [[i32; 2]; 2] {
+        let plain = segment.ends.map(|end| self.is_plain[end as usize]);
+        let is_between = (plain[0] || plain[1]) && self.sides.is_even(view, segment.edge);
+        [0, 1].map(|end| match is_between && plain[end] {
+            true => [0; 2],
+            false => local_layers(view, self.stars, segment.ends, end),
+        })
+    }
+}
+
+/// What a chunk of segments meets.
+struct Chunk {
+    trace: Trace,
+    /// Where the changes of each segment end.
+    ends: Vec<u32>,
+    links: Vec<Link>,
+}
+
+/// What a segment says about the numbers at its ends; on its left and right.
+#[derive(Debug, Clone, Copy, Default)]
+struct Link {
+    /// The layers at the last end less those at the first.
+    total: [i32; 2],
+    /// The layers of triangles that touch the first end, just beyond it, and the last.
+    local: [[i32; 2]; 2],
+}
+
+impl Chunk {
+    fn trace(
+        view: &ViewedScene,
+        around: &Surroundings,
+        neighbors: &Neighbors,
+        segments: &[Option<Segment>],
+        tracer: &mut Tracer,
+    ) -> Self {
+        let mut chunk = Self { trace: Trace::default(), ends: Vec::new(), links: Vec::new() };
+        for segment in segments {
+            let link = segment.as_ref().map_or_else(Link::default, |segment| Link {
+                total: tracer.trace(view, around, segment, &mut chunk.trace),
+                local: neighbors.local_layers(view, segment),
+            });
+            chunk.links.push(link);
+            chunk.ends.push(chunk.trace.changes.len() as u32);
+        }
+        chunk
+    }
+
+    fn changes(&self, i: usize) -> &[Change] {
+        let start = if i == 0 { 0 } else { self.ends[i - 1] };
+        &self.trace.changes[start as usize..self.ends[i] as usize]
+    }
+}
+
+/// How many layers each segment begins with.
+struct Starts {
+    /// On the left and right; `None` when the checksum failed.
+    layers: Vec<Option<[i32; 2]>>,
+    levels: Levels,
+    is_irregular: Vec<bool>,
+    n_sight_lines: u64,
+    n_failures: u64,
+}
+
+/// Which ends of a segment are whole: not cut off by the near plane.
+fn is_whole(segment: &Segment) -> [bool; 2] {
+    [segment.from, segment.to].map(|cut| cut.plane == CutPlane::End)
+}
+
+impl Starts {
+    /// Joins vertices along all segments with two regular ends.
+    fn new(view: &ViewedScene, segments: &[Option<Segment>], traced: &[Chunk]) -> Self {
+        let n_vertices = view.scene().mesh().positions().len();
+        let mut starts = Self {
+            layers: vec![None; segments.len()],
+            levels: Levels::new(n_vertices),
+            is_irregular: vec![false; n_vertices],
+            n_sight_lines: 0,
+            n_failures: 0,
+        };
+        for &vertex in traced.iter().flat_map(|chunk| &chunk.trace.irregular) {
+            starts.is_irregular[vertex as usize] = true;
+        }
+        let links = traced.iter().flat_map(|chunk| &chunk.links);
+        for (segment, link) in segments.iter().zip(links) {
+            let Some(segment) = segment else { continue };
+            let [Some(a), Some(b)] = starts.regular_ends(segment) else { continue };
+            let more = [0, 1].map(|k| link.local[0][k] + link.total[k] - link.local[1][k]);
+            if more[0] != more[1] {
+                starts.levels.contradict(a);
+                starts.levels.contradict(b);
+                starts.n_failures += 1;
+            } else if !starts.levels.join(a, b, more[0]) {
+                starts.n_failures += 1;
+            }
+        }
+        starts
+    }
+
+    fn regular_ends(&self, segment: &Segment) -> [Option<u32>; 2] {
+        let whole = is_whole(segment);
+        [0, 1].map(|end| {
+            let vertex = segment.ends[end];
+            (whole[end] && !self.is_irregular[vertex as usize]).then_some(vertex)
+        })
+    }
+
+    /// One sight line for each set of vertices, and one for each segment that has no regular end.
+    fn ask_sight_lines(
+        &mut self,
+        view: &ViewedScene,
+        around: &Surroundings,
+        tracers: &Tracers,
+        segments: &[Option<Segment>],
+        traced: &[Chunk],
+    ) {
+        let mut is_asked = vec![false; self.is_irregular.len()];
+        // The segment, the end and the vertex whose set is in question.
+        let mut questions: Vec<(u32, usize, Option<u32>)> = Vec::new();
+        for (i, segment) in segments.iter().enumerate() {
+            let Some(segment) = segment else { continue };
+            let ends = self.regular_ends(segment);
+            let regular = ends.iter().enumerate().find_map(|(end, vertex)| Some((end, (*vertex)?)));
+            match regular {
+                Some((end, vertex)) => {
+                    let (root, _) = self.levels.find(vertex);
+                    let is_new = !std::mem::replace(&mut is_asked[root as usize], true);
+                    if is_new && self.levels.base(root) == Base::Unknown {
+                        questions.push((i as u32, end, Some(vertex)));
+                    }
+                }
+                None => {
+                    let end = usize::from(!is_whole(segment)[0]);
+                    questions.push((i as u32, end, None));
+                }
+            }
+        }
+        let answers: Vec<[i32; 2]> = questions
+            .par_iter()
+            .map(|&(i, end, _)| {
+                segments[i as usize].as_ref().map_or([0; 2], |segment| {
+                    tracers.with(|tracer| {
+                        let visitor = &mut tracer.triangle_visitor;
+                        layers_beyond(view, around.triangle_index, visitor, segment, end)
+                    })
+                })
+            })
+            .collect();
+        self.n_sight_lines = questions.len() as u64;
+        for (&(i, end, vertex), layers) in questions.iter().zip(answers) {
+            let i = i as usize;
+            let link = &traced[i / CHUNK].links[i % CHUNK];
+            let local = link.local[end];
+            match vertex {
+                Some(vertex) if layers[0] - local[0] == layers[1] - local[1] => {
+                    self.levels.set(vertex, layers[0] - local[0]);
+                }
+                Some(vertex) => {
+                    self.levels.contradict(vertex);
+                    self.n_failures += 1;
+                }
+                None => self.layers[i] = Some(first_layers(layers, end, link)),
+            }
+        }
+        for (i, segment) in segments.iter().enumerate() {
+            let Some(segment) = segment else { continue };
+            let link = &traced[i / CHUNK].links[i % CHUNK];
+            for (end, vertex) in self.regular_ends(segment).into_iter().enumerate() {
+                if let Some(level) = vertex.and_then(|vertex| self.levels.level(vertex)) {
+                    let layers = link.local[end].map(|local| level + local);
+                    self.layers[i] = Some(first_layers(layers, end, link));
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// The layers at a segment's first end from those at either end.
+fn first_layers(layers: [i32; 2], end: usize, link: &Link) -> [i32; 2] {
+    match end {
+        0 => layers,
+        _ => [0, 1].map(|k| layers[k] - link.total[k]),
+    }
+}
+
+/// What is needed to turn counts into spans.
+struct Drawing<'d, 'a> {
+    view: &'d ViewedScene<'a>,
+    settings: &'d Settings,
+    sides: &'d Sides<'a>,
+    partners: &'d Partners,
+    starts: &'d Starts,
+}
+
+impl Drawing<'_, '_> {
+    /// The spans of a chunk of segments that begins with number `first`, and the numbers of those
+    /// of which nothing certain is known.
+    fn spans(
+        &self,
+        first: usize,
+        segments: &[Option<Segment>],
+        chunk: &[Option<Segment>],
+        traced: &Chunk,
+    ) -> (Visibility, Vec<u32>) {
+        let mut sweep = Sweep::default();
+        let mut visibility = Visibility::default();
+        let mut failed = Vec::new();
+        for (i, segment) in chunk.iter().enumerate() {
+            let Some(segment) = segment else {
+                visibility.push(&[]);
+                continue;
+            };
+            sweep.clear();
+            sweep.start_with(self.starts.layers[first + i].unwrap_or_default());
+            for change in traced.changes(i) {
+                sweep.add_change(change.at, change.by);
+            }
+            for &partner in self.partners.of(first + i) {
+                if let Some(partner) = &segments[partner as usize] {
+                    self.double(segment, partner, &mut sweep);
+                }
+            }
+            let spans = sweep.spans(self.view.sight(), segment, self.settings.count_layers);
+            visibility.push(spans);
+            if self.starts.layers[first + i].is_none() || sweep.lowest() < 0 {
+                failed.push((first + i) as u32);
+            }
+        }
+        (visibility, failed)
+    }
+
+    /// Adds the parts of `segment` that `other` draws.
+    fn double(&self, segment: &Segment, other: &Segment, sweep: &mut Sweep) {
+        let tolerance = self.settings.contact_tolerance;
+        let [p, q] = other.ends;
+        for (triangle, _) in self.sides.along_edge(self.view, other.edge) {
+            let (cover, border, same_depth) =
+                match shadow(self.view, segment, triangle, tolerance, true) {
+                    Some(Shadow::AlongBorder(cover, border)) => (cover, border, false),
+                    Some(Shadow::OnBorder(cover, border)) => (cover, border, true),
+                    _ => continue,
+                };
+            if (border == [p, q] || border == [q, p]) && (!same_depth || other.edge < segment.edge)
+            {
+                sweep.add_doubled(&cover);
+            }
+        }
+    }
+}
+
+/// The same spans with those of the `failed` segments done anew.
+fn replaced_by_roberts(
+    view: &ViewedScene,
+    settings: &Settings,
+    segments: &[Option<Segment>],
+    visibility: &Visibility,
+    failed: &[u32],
+    counts: &mut Counts,
+) -> Visibility {
+    let mut again = vec![None; segments.len()];
+    for &i in failed {
+        again[i as usize] = segments[i as usize];
+    }
+    let (by_roberts, more) = roberts::solve_segments(view, settings, &again);
+    counts.candidate_pairs += more.candidate_pairs;
+    let mut merged = Visibility::default();
+    for (i, segment) in again.iter().enumerate() {
+        let source = if segment.is_some() { &by_roberts } else { visibility };
+        merged.push(source.spans(i));
+    }
+    merged
+}

@@ -1,0 +1,131 @@
+//! How many layers lie over a segment where it leaves one of its ends.
+
+use super::super::index::{ImageIndex, Visitor};
+use super::super::segment::Segment;
+use super::super::shadow::{Sides, side_of};
+use super::cutting::Stars;
+use crate::classify::ViewedScene;
+use crate::predicates::Sign;
+
+/// Whether a triangle covers the segment just beyond `ends[end]`: one for each side it covers, left
+/// and right as seen from the segment's first end to its last.
+///
+/// The triangle must not be edge-on. Exact.
+pub(super) fn covers_beyond(
+    view: &ViewedScene,
+    ends: [u32; 2],
+    end: usize,
+    triangle: u32,
+) -> [i32; 2] {
+    const NONE: [i32; 2] = [0; 2];
+    let corners = view.scene().triangles()[triangle as usize];
+    let turn = view.triangle_turns()[triangle as usize];
+    let sight = view.sight();
+    let (here, there) = (ends[end], ends[1 - end]);
+    let is_corner = corners.contains(&here);
+    if is_corner && corners.contains(&there) {
+        return NONE;
+    }
+    let plane = sight.triangle_plane(corners);
+    let behind = |x| sight.depth_at(&plane, corners, x).1.times(turn);
+    match if is_corner { Sign::Zero } else { behind(here) } {
+        Sign::Negative => return NONE,
+        Sign::Zero if behind(there) != Sign::Positive => return NONE,
+        _ => {}
+    }
+    sides_beyond(view, ends, end, triangle)
+}
+
+/// Whether the segment's image just beyond `ends[end]` lies in a triangle's: one for each side.
+fn sides_beyond(view: &ViewedScene, ends: [u32; 2], end: usize, triangle: u32) -> [i32; 2] {
+    const NONE: [i32; 2] = [0; 2];
+    let corners = view.scene().triangles()[triangle as usize];
+    let turn = view.triangle_turns()[triangle as usize];
+    let sight = view.sight();
+    let (here, there) = (ends[end], ends[1 - end]);
+    let is_corner = corners.contains(&here);
+    let mut along = None;
+    for side in 0..3 {
+        let (p, q) = (corners[side], corners[(side + 1) % 3]);
+        if is_corner && p != here && q != here {
+            continue; // The vertex lies on the inner side of the one opposite.
+        }
+        let plane = sight.sight_plane(p, q);
+        let inside = |x| sight.turn_at(&plane, p, q, x).1.times(turn);
+        match inside(here) {
+            Sign::Negative => return NONE,
+            Sign::Positive => {}
+            Sign::Zero => match inside(there) {
+                Sign::Negative => return NONE,
+                Sign::Positive => {}
+                Sign::Zero => along = Some(side),
+            },
+        }
+    }
+    match along {
+        Some(side) => side_of(view, ends, corners[(side + 2) % 3]).counts(),
+        None => Sides::Both.counts(),
+    }
+}
+
+/// Whether the triangles around a vertex lie side by side in the image, once around.
+///
+/// There no triangle covers an edge that leaves the vertex between two others:
+///
+/// ```text
+///      ╲  │  ╱        The number of triangles over a direction is the same for all directions,
+///       ╲ │ ╱         when each edge has one triangle on its left and one on its right (the
+///   ─────[v]─────     vertex is even); so one direction tells whether it is one everywhere.
+///       ╱ │ ╲
+/// ```
+pub(super) fn is_plain(view: &ViewedScene, stars: &Stars, vertex: u32) -> bool {
+    let around = stars.around(vertex);
+    let Some(&first) = around.first() else { return false };
+    let corners = view.scene().triangles()[first as usize];
+    let Some(other) = corners.into_iter().find(|&corner| corner != vertex) else { return false };
+    let mut layers = [0; 2];
+    for &triangle in around {
+        add(&mut layers, sides_beyond(view, [vertex, other], 0, triangle));
+    }
+    layers == [1; 2]
+}
+
+/// How many of the triangles that have `ends[end]` as a corner cover the segment just beyond it.
+pub(super) fn local_layers(
+    view: &ViewedScene,
+    stars: &Stars,
+    ends: [u32; 2],
+    end: usize,
+) -> [i32; 2] {
+    let mut layers = [0; 2];
+    for &triangle in stars.around(ends[end]) {
+        add(&mut layers, covers_beyond(view, ends, end, triangle));
+    }
+    layers
+}
+
+/// How many triangles of the index cover the segment just beyond one of its ends, by one sight line.
+pub(super) fn layers_beyond(
+    view: &ViewedScene,
+    index: &ImageIndex,
+    visitor: &mut Visitor,
+    segment: &Segment,
+    end: usize,
+) -> [i32; 2] {
+    let point =
+        Segment { image: [segment.image[end]; 2], depth: [segment.depth[end]; 2], ..*segment };
+    let bounds = index.bounds_of(&point).from_eye();
+    let corners = |triangle: u32| view.scene().triangles()[triangle as usize];
+    let mut layers = [0; 2];
+    visitor.any_within(index, view, &point, &bounds, corners, |triangle| {
+        add(&mut layers, covers_beyond(view, segment.ends, end, triangle));
+        false
+    });
+    layers
+}
+
+/// Adds to both sides.
+pub(super) fn add(layers: &mut [i32; 2], more: [i32; 2]) {
+    layers[0] += more[0];
+    layers[1] += more[1];
+}
