@@ -22,7 +22,8 @@ impl LinedMesh {
     /// Cuts all triangles at the given heights and draws lines of kind level there. An edge that
     /// lies at a level is one, unless the faces beside it do, too. O(triangles + pieces).
     pub fn add_levels(&mut self, levels: &[f64]) {
-        let mut levels: Vec<f64> = levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
+        let mut levels: Vec<f64> =
+            levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         let mut cutter = Cutter {
@@ -98,7 +99,8 @@ impl Cutter<'_> {
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 let z = self.z(a);
-                if z == self.z(b) && self.levels.binary_search_by(|l| l.total_cmp(&(z + 0.0))).is_ok()
+                if z == self.z(b)
+                    && self.levels.binary_search_by(|l| l.total_cmp(&(z + 0.0))).is_ok()
                 {
                     curves.push([a, b]);
                 }

@@ -53,11 +53,8 @@ pub fn draw(
         }
         ViewedScene::with_edges(scene, camera, edges)
     });
-    let settings = Settings {
-        contact_tolerance: 0.0,
-        count_layers: false,
-        find_doubled: !options.exact,
-    };
+    let settings =
+        Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: !options.exact };
     let (visibility, counts, engine) =
         timed(&mut stats.seconds.visibility, || solve(&view, options.engine, &settings));
     stats.engine = engine;
