@@ -51,6 +51,8 @@ pub mod engines;
 
 pub mod strokes;
 
+pub mod dressing;
+
 pub mod chain;
 
 pub mod draw;

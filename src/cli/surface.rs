@@ -8,6 +8,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
+use hiddenline::dressing::{Titles, dress};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
@@ -69,6 +70,8 @@ pub(super) struct SurfaceArgs {
     camera: CameraArgs,
     #[command(flatten)]
     lines: LineArgs,
+    #[command(flatten)]
+    dressing: DressingArgs,
     #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
@@ -153,6 +156,28 @@ struct LineArgs {
     /// as given
     #[arg(long)]
     exact: bool,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Axes")]
+struct DressingArgs {
+    /// Draw nothing but the surface; --exact implies it
+    #[arg(long, conflicts_with_all = ["title", "axis_titles"])]
+    no_axes: bool,
+    /// What is written above the drawing
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    title: Option<String>,
+    /// What is written beside the axes
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_value = "x,y,z")]
+    axis_titles: Vec<String>,
+}
+
+impl DressingArgs {
+    fn titles(self) -> Result<Titles, String> {
+        let axes = self.axis_titles.try_into();
+        let axes = axes.map_err(|_| "give three titles of axes with commas between them")?;
+        Ok(Titles { axes, drawing: self.title.unwrap_or_default() })
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -245,6 +270,8 @@ pub(super) struct Job {
     border: bool,
     all_edges: bool,
     engine: EngineName,
+    /// `None` for no axes.
+    titles: Option<Titles>,
     page: PageOptions,
     pen_width_mm: f64,
     output: OutputOptions,
@@ -253,7 +280,7 @@ pub(super) struct Job {
 impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, String> {
-        let Self { surface, camera, lines, page, output } = self;
+        let Self { surface, camera, lines, dressing, page, output } = self;
         let samples = surface.samples.unwrap_or((DEFAULT_SAMPLES, DEFAULT_SAMPLES));
         let parse = |texts: &[String], variables| {
             let parse = |(k, text): (usize, &String)| {
@@ -330,6 +357,7 @@ impl SurfaceArgs {
             border: has(LineName::Border),
             all_edges: has(LineName::Mesh),
             engine: lines.engine,
+            titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },
             page: page.options(),
             pen_width_mm: page.pen_width_mm(),
             output: output.options()?,
@@ -355,10 +383,13 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     };
     progress.stage("drawing");
     stats.seconds = seconds;
-    let drawing = match surface.only_grid(job) {
+    let mut drawing = match surface.only_grid(job) {
         Some(grid) => draw_by_grid(job, grid, &camera, &mut stats)?,
         None => draw_by_mesh(job, &surface, factor, &camera, &mut stats)?,
     };
+    if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
+        dress(&mut drawing, bounds, factor, &camera, titles);
+    }
     seconds = stats.seconds;
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();

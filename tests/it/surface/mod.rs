@@ -1,5 +1,7 @@
-//! Function surfaces: engines against brute force and closed forms.
+//! Function surfaces: engines against brute force and closed forms, and the program.
 
 mod brute;
 mod floating_horizon;
 mod max_min;
+mod meshed;
+mod program;
