@@ -82,7 +82,8 @@ pub(super) struct SurfaceArgs {
 #[command(next_help_heading = "Surface")]
 struct InputArgs {
     /// Formulas of x, y, r and theta
-    #[arg(value_name = "EXPR", allow_hyphen_values = true)]
+    // One value at a time: otherwise options after a formula would be taken for formulas.
+    #[arg(value_name = "EXPR", allow_hyphen_values = true, num_args = 1)]
     #[arg(required_unless_present_any = ["grid", "points", "parametric"])]
     expressions: Vec<String>,
     /// Heights from a file; `-` is standard input

@@ -12,8 +12,10 @@ mod horizon;
 mod lines;
 pub mod max_min;
 pub mod meshed;
+mod pen_path;
 mod pieces;
 mod plan_predicates;
+mod segment;
 mod strip;
 
 pub use horizon::Work;

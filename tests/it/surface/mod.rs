@@ -4,4 +4,5 @@ mod brute;
 mod floating_horizon;
 mod max_min;
 mod meshed;
+mod pen_path;
 mod program;
