@@ -181,6 +181,23 @@ impl<'a> ViewedScene<'a> {
         view
     }
 
+    /// Draws the given edges, and only those, whatever their faces are like.
+    ///
+    /// They need not be in order. An edge that is given more than once bears the last of its kinds
+    /// in the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when there
+    /// is no such edge. O(faces + edges log edges).
+    pub fn with_edges(scene: &'a Scene, camera: &Camera, mut edges: Vec<DrawnEdge>) -> Self {
+        let mut view = Self::new(scene, camera, LineSelection::NONE, DEFAULT_CREASE_DEG);
+        edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
+        edges.dedup_by_key(|drawn| drawn.edge);
+        edges.retain(|drawn| {
+            let [a, b] = scene.topology().edge(drawn.edge);
+            !view.sight.same_image(a, b)
+        });
+        view.drawn = edges;
+        view
+    }
+
     /// The scene.
     pub fn scene(&self) -> &'a Scene {
         self.scene

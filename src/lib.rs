@@ -70,6 +70,8 @@ pub mod engines;
 
 pub mod strokes;
 
+pub mod dressing;
+
 pub mod chain;
 
 pub mod draw;

@@ -2,6 +2,13 @@
 
 mod csv;
 mod grid;
+mod height_files;
+mod levels;
+mod lined_mesh;
+mod points;
 
 pub use csv::{CsvError, Placement, read_csv};
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
+pub use height_files::{HeightFileError, read_heights};
+pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
+pub use points::{PointsError, delaunay, read_points};

@@ -54,6 +54,8 @@ pictures! {
     platonic the_solids_are_up_to_date "../../examples/platonic.rs";
     spiral_stair the_stair_is_up_to_date "../../examples/spiral_stair.rs";
     spot the_cow_is_up_to_date "../../examples/spot.rs";
+    surface_klein the_bottle_is_up_to_date "../../examples/surface_klein.rs";
+    surface_peaks the_peaks_are_up_to_date "../../examples/surface_peaks.rs";
     torus_knot the_knot_is_up_to_date "../../examples/torus_knot.rs";
 }
 

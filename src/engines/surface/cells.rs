@@ -11,7 +11,7 @@
 use std::cmp::Ordering;
 
 use super::Order;
-use super::horizon::{Samples, Vertex};
+use super::segment::{Samples, Vertex};
 use super::strip::Strip;
 use crate::surface::Grid;
 

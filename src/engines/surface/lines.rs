@@ -1,11 +1,11 @@
 //! Visible pieces of grid lines, chained into strokes.
 //!
-//! One stroke runs along a grid line as long as it is visible. Lines are taken to and fro, so that
-//! the pen goes on near where it stopped.
+//! One stroke runs along a grid line as long as it is visible.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::pen_path::{LineStroke, order};
 use super::pieces::{GridPieces, LOWER, PARTLY, Piece, Side, UPPER};
 use crate::strokes::{Drawing, StrokeKind};
 use crate::surface::Grid;
@@ -40,41 +40,36 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines)
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let every = lines.every.max(1);
     let chosen = |n: usize| (0..n).filter(move |k| k % every == 0 || k + 1 == n);
-    let mut wanted: Vec<Line> = Vec::new();
+    let mut families: Vec<Vec<Line>> = Vec::new();
     if lines.along_x {
-        wanted.extend(chosen(ny).map(|j| Line {
-            first: j * nx,
-            step: 1,
-            edge: j * (nx - 1),
-            n: nx,
-        }));
+        let line = |j| Line { first: j * nx, step: 1, edge: j * (nx - 1), n: nx };
+        families.push(chosen(ny).map(line).collect());
     }
     if lines.along_y {
         let along_x = ny * (nx - 1);
-        wanted.extend(chosen(nx).map(|i| Line {
-            first: i,
-            step: nx,
-            edge: along_x + i * (ny - 1),
-            n: ny,
-        }));
+        let line = |i| Line { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
+        families.push(chosen(nx).map(line).collect());
     }
-    let chains: Vec<Chains> = wanted
-        .par_iter()
-        .enumerate()
-        .map(|(k, line)| {
-            let mut chains = line.chains(grid, pieces, &projector, lines);
-            if k % 2 == 1 {
-                chains.reverse();
-            }
-            chains
-        })
-        .collect();
     let mut drawing = Drawing::default();
-    for chains in &chains {
-        let mut start = 0;
-        for &end in &chains.ends {
-            drawing.push(StrokeKind::Grid, 0, chains.points[start..end].iter().copied());
-            start = end;
+    for family in &families {
+        let chains: Vec<Chains> =
+            family.par_iter().map(|line| line.chains(grid, pieces, &projector, lines)).collect();
+        let strokes: Vec<(LineStroke, &[DVec2])> =
+            chains.iter().zip(0..).flat_map(|(chains, line)| chains.strokes(line)).collect();
+        if lines.separate {
+            for (_, points) in &strokes {
+                drawing.push(StrokeKind::Grid, 0, points.iter().copied());
+            }
+            continue;
+        }
+        let ends: Vec<LineStroke> = strokes.iter().map(|(stroke, _)| *stroke).collect();
+        for (stroke, is_backwards) in order(&ends) {
+            let points = strokes[stroke].1.iter().copied();
+            if is_backwards {
+                drawing.push(StrokeKind::Grid, 0, points.rev());
+            } else {
+                drawing.push(StrokeKind::Grid, 0, points);
+            }
         }
     }
     drawing
@@ -133,27 +128,33 @@ struct Line {
 struct Chains {
     points: Vec<DVec2>,
     ends: Vec<usize>,
+    /// Where each begins and ends on its line, in samples.
+    spans: Vec<[f64; 2]>,
 }
 
 impl Chains {
     /// Goes on to `to`, from where the last chain ended if it is `joined`, otherwise from `from`.
-    fn extend(&mut self, joined: bool, from: impl FnOnce() -> DVec2, to: DVec2) {
-        if joined {
-            self.ends.pop();
-        } else {
-            self.points.push(from());
+    fn extend(&mut self, joined: bool, from: impl FnOnce() -> DVec2, to: DVec2, span: [f64; 2]) {
+        match self.spans.last_mut() {
+            Some(last) if joined => {
+                last[1] = span[1];
+                self.ends.pop();
+            }
+            _ => {
+                self.points.push(from());
+                self.spans.push(span);
+            }
         }
         self.points.push(to);
         self.ends.push(self.points.len());
     }
 
-    fn reverse(&mut self) {
-        self.points.reverse();
-        let starts = std::iter::once(0).chain(self.ends.iter().copied());
-        let n = self.points.len();
-        let mut ends: Vec<usize> = starts.take(self.ends.len()).map(|start| n - start).collect();
-        ends.reverse();
-        self.ends = ends;
+    fn strokes(&self, line: u32) -> impl Iterator<Item = (LineStroke, &[DVec2])> {
+        let starts = std::iter::once(&0).chain(&self.ends);
+        starts.zip(&self.ends).zip(&self.spans).map(move |((&start, &end), &span)| {
+            let points = &self.points[start..end];
+            (LineStroke { line, span, ends: [points[0], points[points.len() - 1]] }, points)
+        })
     }
 }
 
@@ -191,7 +192,8 @@ impl Line {
                     1.0 => projector.image(q),
                     t => projector.image(p + t * (q - p)),
                 };
-                chains.extend(last == Some(t0), || at(t0), at(t1));
+                let span = [t0, t1].map(|t| k as f64 + t);
+                chains.extend(last == Some(t0), || at(t0), at(t1), span);
                 last = Some(t1);
                 reached = t1 == 1.0;
             };

@@ -35,9 +35,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cells::{First, Part};
-use super::horizon::Plane;
 use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
 use super::plan_predicates::{Sight, over_plane};
+use super::segment::Plane;
 use super::strip::Strip;
 use super::{Order, SurfaceError, Work};
 use crate::surface::{Grid, Holes};

@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use glam::DVec3;
 
 use super::Work;
-use super::horizon::{End, Horizon, Plane, Samples, Segment, Stop, Vertex};
+use super::horizon::{Horizon, Stop};
 use super::pieces::{HIDDEN, LOWER, Piece, Side, UPPER};
+use super::segment::{End, Plane, Samples, Segment, Vertex};
 
 /// A strip of one part of the domain, from one u to another. Strips never hide each other.
 pub(super) struct Strip<'a, S: Samples> {

@@ -1,5 +1,8 @@
-//! Function surfaces: engines against brute force and closed forms.
+//! Function surfaces: engines against brute force and closed forms, and the program.
 
 mod brute;
 mod floating_horizon;
 mod max_min;
+mod meshed;
+mod pen_path;
+mod program;

@@ -1,0 +1,48 @@
+//! A hill and a hollow over a square, by grid lines, with axes.
+
+mod sheet;
+
+use glam::dvec3;
+
+use hiddenline::draw::HiddenLines;
+use hiddenline::dressing::{Titles, dress};
+use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
+use hiddenline::formula::{Formula, Variables};
+use hiddenline::framing::Framing;
+use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::plot::Plot;
+use hiddenline::surface::Grid;
+
+use sheet::{Result, save};
+
+const PEAKS: &str =
+    "3*(1-x)^2*exp(-x^2-(y+1)^2) - 10*(x/5-x^3-y^5)*exp(-x^2-y^2) - exp(-(x+1)^2-y^2)/3";
+
+/// Heights are drawn at this scale.
+const Z_FACTOR: f64 = 0.22;
+
+pub(crate) fn plot() -> Result<Plot> {
+    let formula = Formula::parse(PEAKS, Variables::Plane)?;
+    // Sampled finely for smooth curves, of which every fifth is drawn.
+    let mut grid = Grid::sample(&formula, (-3.0, 3.0), (-3.0, 3.0), (241, 241))?;
+    grid.scale_heights(Z_FACTOR);
+    let (low, high) = grid.heights().unwrap_or_default();
+    let bounds = (dvec3(-3.0, -3.0, low), dvec3(3.0, 3.0, high));
+    let camera = Framing::default().camera(bounds)?;
+    let pieces = max_min::solve(&grid, &camera, Order::Rows)?;
+    let mut drawing = strokes(&grid, &pieces, &camera, &Lines { every: 5, ..Lines::default() });
+    let titles = Titles { drawing: "Peaks".into(), ..Titles::default() };
+    dress(&mut drawing, bounds, Z_FACTOR, &camera, &titles);
+    let options = PlotOptions {
+        pen_width_mm: 0.3,
+        hidden: HiddenLines::None,
+        dash: Dash::default(),
+        title: "Peaks".into(),
+        source: String::new(),
+    };
+    Ok(Page::new(&drawing, &camera, &PageOptions::default())?.plot(&drawing, options).plot)
+}
+
+fn main() -> Result<()> {
+    save("surface_peaks", &plot()?)
+}

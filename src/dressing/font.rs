@@ -1,0 +1,84 @@
+//! A single-stroke font: letters as the pen draws them, without outlines.
+//!
+//! ```text
+//!   8 ┬ ╷   ╱╲     capitals, digits and letters with a stem
+//!   6 ┼ │  ╱──╲    small letters
+//!   2 ┴ └─╱    ╲   the baseline
+//!   0              descenders
+//! ```
+//!
+//! Glyphs are drawn on a grid 4 units wide and 8 high. Each is its width and its strokes: points of
+//! two digits, x and y, run together; a blank lifts the pen.
+
+use glam::{DVec2, dvec2};
+
+/// From the baseline to the top of capitals, in units of the glyphs' grid.
+const CAPITAL: f64 = 6.0;
+
+/// Empty units after each glyph.
+const GAP: f64 = 1.6;
+
+const BASELINE: f64 = 2.0;
+
+/// A character, its width and its strokes.
+type Glyph = (char, u8, &'static str);
+
+#[rustfmt::skip]
+const GLYPHS: &[Glyph] = &[
+    ('!', 0, "0804 0302"), ('"', 2, "0806 2826"), ('#', 4, "1218 3238 0444 0646"),
+    ('$', 4, "473818070615354443321203 2921"), ('%', 4, "0248 0718 3243"), ('&', 4, "4206071827260403122244"),
+    ('\'', 0, "0806"), ('(', 1, "18060412"), (')', 1, "08161402"), ('*', 4, "2337 2733 0545"),
+    ('+', 4, "2337 0545"), (',', 1, "1201"), ('-', 3, "0535"), ('.', 0, "0203"), ('/', 3, "0238"),
+    ('0', 3, "180703122233372818") , ('1', 2, "071828 2822"), ('2', 4, "07183847460242"),
+    ('3', 4, "07183847463525 354443321203"), ('4', 4, "380444 3832"), ('5', 4, "480805354443321203"),
+    ('6', 4, "3818060312324344351504"), ('7', 4, "084812"), ('8', 4, "15060718384746351504031232434435"),
+    ('9', 4, "1232444738180706153546"), (':', 0, "0302 0605"), (';', 1, "1615 1201"), ('<', 3, "370533"),
+    ('=', 3, "0434 0636"), ('>', 3, "073503"), ('?', 3, "07182837362524 2322"), ('@', 4, "3635251413233336 3343474838180703123242"),
+    ('A', 4, "022842 1434"), ('B', 4, "02083847463505 3544433202"), ('C', 4, "4738180703123243"),
+    ('D', 4, "02082846442202"), ('E', 4, "48080242 0535"), ('F', 4, "480802 0535"),
+    ('G', 4, "47381807031232434525"), ('H', 4, "0802 4842 0545"), ('I', 0, "0802"),
+    ('J', 3, "3833221203"), ('K', 4, "0802 4804 1542"), ('L', 3, "080232"), ('M', 4, "0208254842"),
+    ('N', 4, "02084248"), ('O', 4, "180703123243473818"), ('P', 4, "02083847463505"),
+    ('Q', 4, "180703123243473818 2442"), ('R', 4, "02083847463505 2542"), ('S', 4, "473818070615354443321203"),
+    ('T', 4, "0848 2822"), ('U', 4, "080312324348"), ('V', 4, "082248"), ('W', 4, "0812253248"),
+    ('X', 4, "0842 0248"), ('Y', 4, "082548 2522"), ('Z', 4, "08480242"), ('[', 1, "18080212"),
+    ('\\', 3, "0832"), (']', 1, "08181202"), ('^', 3, "061836"), ('_', 4, "0141"), ('`', 1, "0817"),
+    ('a', 3, "36160503122233 3632"), ('b', 3, "0802 0516263533221203"), ('c', 3, "3626160503122232"),
+    ('d', 3, "3832 3626160503122233"), ('e', 3, "043435261605031232"), ('f', 2, "28180702 0525"),
+    ('g', 3, "361605041333 3631201001"), ('h', 3, "0802 0516263532"), ('i', 0, "0602 0807"),
+    ('j', 1, "16110010 1817"), ('k', 3, "0802 3603 1432"), ('l', 1, "080312"), ('m', 4, "0602 0516252622 2536454642"),
+    ('n', 3, "0602 0516263532"), ('o', 3, "160503122233352616"), ('p', 3, "0600 0516263533221203"),
+    ('q', 3, "3630 3526160503122233"), ('r', 2, "0602 051626"), ('s', 3, "3616051434231203"),
+    ('t', 2, "08031222 0626"), ('u', 3, "0603122233 3632"), ('v', 4, "062246"), ('w', 4, "0612243246"),
+    ('x', 3, "0632 0236"), ('y', 3, "0622 3610"), ('z', 3, "06360232"), ('{', 2, "28181605141222"),
+    ('|', 0, "0801"), ('}', 2, "08181625141202"), ('~', 4, "05162434 3445"),
+];
+
+/// The strokes of a line of text, `height` being that of its capitals, from (0, 0) at the left end
+/// of the baseline to the right and upwards; and its width. Characters that are not ASCII, and
+/// minus signs but for these, become a question mark.
+pub fn text(line: &str, height: f64) -> (Vec<Vec<DVec2>>, f64) {
+    let unit = height / CAPITAL;
+    let mut strokes = Vec::new();
+    let mut at = 0.0;
+    for character in line.chars() {
+        let character = match character {
+            ' ' => {
+                at += 3.0 + GAP;
+                continue;
+            }
+            '−' | '–' => '-',
+            other => other,
+        };
+        let glyph = |wanted: char| GLYPHS.iter().find(|(character, ..)| *character == wanted);
+        let Some((_, width, drawing)) = glyph(character).or_else(|| glyph('?')) else { continue };
+        for stroke in drawing.split(' ').filter(|stroke| stroke.len() >= 4) {
+            let digit = |byte: u8| f64::from(byte.saturating_sub(b'0'));
+            let points = stroke.as_bytes().chunks_exact(2);
+            let place = |p: &[u8]| dvec2(at + digit(p[0]), digit(p[1]) - BASELINE) * unit;
+            strokes.push(points.map(place).collect());
+        }
+        at += f64::from(*width) + GAP;
+    }
+    (strokes, (at - GAP).max(0.0) * unit)
+}

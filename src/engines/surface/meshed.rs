@@ -1,0 +1,82 @@
+//! Surfaces drawn by the mesh engines: with holes, of several sheets, or of any shape in space.
+
+use crate::chain::{ChainOptions, chain};
+use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
+use crate::engines::edge::{Engine, Settings, solve};
+use crate::stats::{Stats, timed};
+use crate::strokes::{Drawing, StrokeKind};
+use crate::surface::LinedScene;
+use crate::view::Camera;
+
+/// How a surface is drawn by a mesh engine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshedOptions {
+    /// Which mesh engine.
+    pub engine: Engine,
+    /// Edges between a front and a back triangle, too.
+    pub folds: bool,
+    /// Edges with only one triangle, too.
+    pub border: bool,
+    /// One two-point stroke for each maximal visible interval of each edge.
+    pub exact: bool,
+    /// Join only pieces of one kind.
+    pub apart_by_kind: bool,
+    /// Visible strokes shorter than this are dropped, in millimetres on paper.
+    pub shortest_stroke_mm: f64,
+}
+
+/// Draws the lines of a surface as `camera` sees them; counts and times go to `stats`.
+///
+/// The visible parts are exact for the triangles. `mm_per_unit` tells how many millimetres on paper
+/// an image unit becomes for a drawing with the given strokes.
+pub fn draw(
+    surface: &LinedScene,
+    camera: &Camera,
+    options: &MeshedOptions,
+    mm_per_unit: impl FnOnce(&Drawing) -> f64,
+    stats: &mut Stats,
+) -> Drawing {
+    let LinedScene { scene, lines } = surface;
+    let view = timed(&mut stats.seconds.classify, || {
+        let mut edges = lines.clone();
+        let mut selection = LineSelection::NONE;
+        for (is_wanted, kind) in
+            [(options.folds, StrokeKind::Silhouette), (options.border, StrokeKind::Boundary)]
+        {
+            if is_wanted {
+                selection = selection.with(kind);
+            }
+        }
+        if selection != LineSelection::NONE {
+            let of_the_view = ViewedScene::new(scene, camera, selection, DEFAULT_CREASE_DEG);
+            edges.extend_from_slice(of_the_view.drawn());
+        }
+        ViewedScene::with_edges(scene, camera, edges)
+    });
+    let settings =
+        Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: !options.exact };
+    let (visibility, counts, engine) =
+        timed(&mut stats.seconds.visibility, || solve(&view, options.engine, &settings));
+    stats.engine = engine;
+    stats.vertices = scene.mesh().positions().len();
+    stats.faces = scene.mesh().n_faces();
+    stats.triangles = scene.triangles().len();
+    stats.edges = scene.topology().edges().len();
+    stats.drawn_edges = view.drawn().len();
+    stats.counts.candidate_pairs = counts.candidate_pairs;
+    stats.counts.exact_predicates = view.sight().n_exact();
+    timed(&mut stats.seconds.strokes, || {
+        let mut chaining = ChainOptions {
+            hidden: false,
+            exact: true,
+            apart_by_kind: options.apart_by_kind,
+            shortest: 0.0,
+        };
+        if !options.exact && options.shortest_stroke_mm > 0.0 {
+            let scale = mm_per_unit(&chain(&view, &visibility, &chaining));
+            chaining.shortest = options.shortest_stroke_mm / scale;
+        }
+        chaining.exact = options.exact;
+        chain(&view, &visibility, &chaining)
+    })
+}

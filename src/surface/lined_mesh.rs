@@ -1,0 +1,178 @@
+//! Surfaces as triangles with the lines that are drawn on them: what the mesh engines draw.
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::Grid;
+use crate::classify::DrawnEdge;
+use crate::mesh::{Mesh, MeshError, PolygonSoup};
+use crate::scene::Scene;
+use crate::strokes::StrokeKind;
+
+/// Points on the border of a parametric surface that are closer than this part of its largest
+/// coordinate are one point, so that a torus closes although sin 2π is rounded. Smaller, and seams
+/// stay open; larger, and narrow slits close.
+pub const SEAM_TOLERANCE: f64 = 1.0 / (1u64 << 36) as f64;
+
+/// Triangles that hide, and lines along their edges that are drawn. Triangles without a line along
+/// an edge still hide; a line that is on no triangle is not drawn.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LinedMesh {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) lines: Vec<SurfaceLine>,
+}
+
+/// A line between two vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct SurfaceLine {
+    pub(super) ends: [u32; 2],
+    pub(super) kind: StrokeKind,
+}
+
+/// Which lines of a lattice are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LatticeLines {
+    /// Those along the rows: y or v is constant.
+    pub along_rows: bool,
+    /// Those along the columns: x or u is constant.
+    pub along_columns: bool,
+    /// Only each line with a number that is a multiple of this, counted from 0, and the last one.
+    pub every: usize,
+    /// All edges of all triangles, with the diagonals.
+    pub triangles: bool,
+}
+
+/// A [`LinedMesh`] made ready for any number of views.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinedScene {
+    /// The triangles.
+    pub scene: Scene,
+    /// The edges that lie on a line.
+    pub lines: Vec<DrawnEdge>,
+}
+
+impl LinedMesh {
+    /// Adds the triangles and lines of a grid; the cells around a hole are left out.
+    pub fn push_grid(&mut self, grid: &Grid, lines: &LatticeLines) {
+        let points: Vec<DVec3> = (0..grid.zs().len() as u32).map(|k| grid.point(k)).collect();
+        self.push_lattice(grid.xs().len(), &points, lines);
+    }
+
+    /// Adds a lattice of points in space, given row by row with `n_columns` in each; a point that
+    /// is not finite is a hole. Cells are cut along (i,j)–(i+1,j+1). O(points).
+    pub fn push_lattice(&mut self, n_columns: usize, points: &[DVec3], lines: &LatticeLines) {
+        let base = self.positions.len();
+        let n_rows = points.len() / n_columns.max(1);
+        let is_hole = |k: usize| !points[k].is_finite();
+        // Vertices that no triangle uses are dropped later; they only have to be finite until then.
+        self.positions.extend(points.iter().map(|p| if p.is_finite() { *p } else { DVec3::ZERO }));
+        let id = |k: usize| (base + k) as u32;
+        for j in 0..n_rows.saturating_sub(1) {
+            for i in 0..n_columns - 1 {
+                let k = j * n_columns + i;
+                let (right, above) = (k + 1, k + n_columns);
+                for corners in [[k, right, above + 1], [k, above + 1, above]] {
+                    if !corners.into_iter().any(is_hole) {
+                        self.push_triangle(corners.map(id), lines.triangles);
+                    }
+                }
+            }
+        }
+        let every = lines.every.max(1);
+        let chosen = |k: usize, n: usize| k % every == 0 || k + 1 == n;
+        let mut push = |a: usize, b: usize| {
+            if !is_hole(a) && !is_hole(b) {
+                self.lines.push(SurfaceLine { ends: [id(a), id(b)], kind: StrokeKind::Grid });
+            }
+        };
+        for k in 0..points.len() {
+            let (i, j) = (k % n_columns, k / n_columns);
+            if lines.along_rows && i + 1 < n_columns && chosen(j, n_rows) {
+                push(k, k + 1);
+            }
+            if lines.along_columns && j + 1 < n_rows && chosen(i, n_columns) {
+                push(k, k + n_columns);
+            }
+        }
+    }
+
+    /// Adds triangles over points of their own, with lines of kind mesh along all of their edges
+    /// if `is_lined`.
+    pub fn push_triangles(&mut self, points: &[DVec3], triangles: &[[u32; 3]], is_lined: bool) {
+        let base = self.positions.len() as u32;
+        self.positions.extend_from_slice(points);
+        for corners in triangles {
+            self.push_triangle(corners.map(|k| base + k), is_lined);
+        }
+    }
+
+    fn push_triangle(&mut self, corners @ [a, b, c]: [u32; 3], is_lined: bool) {
+        self.triangles.push(corners);
+        if is_lined {
+            let ends = [[a, b], [b, c], [c, a]].into_iter();
+            self.lines.extend(ends.map(|ends| SurfaceLine { ends, kind: StrokeKind::Mesh }));
+        }
+    }
+
+    /// Number of triangles.
+    pub fn n_triangles(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Makes vertices at the same place one and finds the edges that lie on lines.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, or more than a mesh can have.
+    pub fn into_scene(self) -> Result<LinedScene, MeshError> {
+        let key = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
+        let mut soup = PolygonSoup { positions: self.positions, ..PolygonSoup::default() };
+        for corners in &self.triangles {
+            soup.push_face(corners);
+        }
+        let ends: Vec<[DVec3; 2]> =
+            self.lines.iter().map(|line| line.ends.map(|k| soup.positions[k as usize])).collect();
+        let (mesh, _) = Mesh::new(soup)?;
+        let scene = Scene::new(mesh);
+        let vertices: FxHashMap<[u64; 3], u32> =
+            scene.mesh().positions().iter().zip(0..).map(|(p, vertex)| (key(*p), vertex)).collect();
+        let edge = |[a, b]: [DVec3; 2]| {
+            scene.topology().find_edge(*vertices.get(&key(a))?, *vertices.get(&key(b))?)
+        };
+        let lines = ends
+            .iter()
+            .zip(&self.lines)
+            .filter_map(|(ends, line)| Some(DrawnEdge { edge: edge(*ends)?, kind: line.kind }))
+            .collect();
+        Ok(LinedScene { scene, lines })
+    }
+}
+
+/// Makes border points of a lattice that nearly coincide equal, within [`SEAM_TOLERANCE`].
+///
+/// The first of such points, in the order of the lattice, stands for all. O(border²) at worst, for
+/// a border whose points all have the same x; O(border log border) usually.
+pub fn close_seams(n_columns: usize, points: &mut [DVec3]) {
+    let n_rows = points.len() / n_columns.max(1);
+    let is_border = |k: &usize| {
+        let (i, j) = (k % n_columns, k / n_columns);
+        i == 0 || j == 0 || i + 1 == n_columns || j + 1 == n_rows
+    };
+    let mut border: Vec<usize> =
+        (0..points.len()).filter(is_border).filter(|&k| points[k].is_finite()).collect();
+    let size = border.iter().map(|&k| points[k].abs().max_element()).fold(0.0, f64::max);
+    let tolerance = size * SEAM_TOLERANCE;
+    border.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(a.cmp(&b)));
+    let original: Vec<DVec3> = border.iter().map(|&k| points[k]).collect();
+    for (at, &k) in border.iter().enumerate() {
+        let p = original[at];
+        let near = original[..at].iter().rev().take_while(|q| p.x - q.x <= tolerance).count();
+        let ahead = original[at..].iter().take_while(|q| q.x - p.x <= tolerance).count();
+        let first = (at - near..at + ahead)
+            .filter(|&other| original[other].distance(p) <= tolerance)
+            .min_by_key(|&other| border[other]);
+        if let Some(first) = first {
+            points[k] = original[first];
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! `hiddenline surface`, one behavior a test.
+
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn run(folder: &TempDir, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hiddenline"))
+        .arg("surface")
+        .args(arguments)
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts")
+}
+
+/// A folder with one file `heights`.
+fn with_file(content: impl AsRef<[u8]>) -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("heights"), content).expect("written");
+    folder
+}
+
+/// The strokes of a drawing, and which engine drew it.
+fn drawn(folder: &TempDir, arguments: &[&str]) -> (Vec<Value>, String) {
+    let axes = if arguments.iter().any(|a| *a == "--title") { &[][..] } else { &["--no-axes"] };
+    let output = run(folder, &[arguments, axes, &["--format", "json", "--stats"]].concat());
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    let drawing: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let stats: Value = serde_json::from_str(stderr.lines().last().expect("a line")).expect("JSON");
+    let strokes = drawing["strokes"].as_array().expect("strokes").clone();
+    (strokes, stats["engine"].as_str().expect("a name").to_owned())
+}
+
+fn kinds(strokes: &[Value]) -> Vec<&str> {
+    let mut kinds: Vec<&str> = strokes.iter().filter_map(|s| s["kind"].as_str()).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    kinds
+}
+
+/// The segments of exact strokes, in a fixed order.
+fn segments(strokes: &[Value]) -> Vec<[f64; 4]> {
+    let mut segments: Vec<[f64; 4]> = strokes
+        .iter()
+        .map(|stroke| {
+            let at = |k: usize, i: usize| stroke["points"][k][i].as_f64().expect("a number");
+            let (a, b) = ([at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]);
+            let (a, b) = if a < b { (a, b) } else { (b, a) };
+            [a[0], a[1], b[0], b[1]]
+        })
+        .collect();
+    segments.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    segments
+}
+
+#[test]
+fn roberts_by_choice_draws_what_max_min_draws() {
+    let folder = with_file("");
+    let formula = ["2*sin(x)*cos(1.3*y)", "--samples", "25x19", "--exact", "--eye", "9,-12,5"];
+    let (by_grid, engine) = drawn(&folder, &formula);
+    assert_eq!(engine, "max-min");
+    let (by_mesh, engine) = drawn(&folder, &[&formula[..], &["--engine", "roberts"]].concat());
+    assert_eq!(engine, "roberts");
+    let length =
+        |list: &[[f64; 4]]| -> f64 { list.iter().map(|s| (s[2] - s[0]).hypot(s[3] - s[1])).sum() };
+    let (by_grid, by_mesh) = (segments(&by_grid), segments(&by_mesh));
+    assert!(by_mesh.len() > 500);
+    assert!((length(&by_grid) - length(&by_mesh)).abs() < 1e-9 * length(&by_mesh));
+    assert!(by_grid.len() >= by_mesh.len());
+}
+
+#[test]
+fn what_max_min_cannot_draw_goes_to_a_mesh_engine() {
+    let folder = with_file("1 2 3\n2 nan 2\n1 1 0\n0 0 0\n1 0 1\n");
+    for arguments in [
+        &["--grid", "heights"][..],
+        &["sqrt(9 - r^2)", "--samples", "21"],
+        &["x", "-y", "--samples", "9"],
+        &["-x^2", "--samples", "9", "--lines", "x,levels"],
+        &["x*y", "--samples", "9", "--lines", "silhouette,border"],
+        &["--parametric", "u", "v", "u*v", "--samples", "7", "--lines", "mesh"],
+    ] {
+        let (strokes, engine) = drawn(&folder, arguments);
+        assert_eq!(engine, "roberts", "{arguments:?}");
+        assert!(!strokes.is_empty(), "{arguments:?}");
+    }
+    let (strokes, _) = drawn(&folder, &["-x^2", "--samples", "9", "--lines", "x,levels"]);
+    assert_eq!(kinds(&strokes), ["grid", "level"]);
+}
+
+#[test]
+fn a_sheet_hides_the_one_below() {
+    let folder = with_file("");
+    let view = ["--view", "top", "--samples", "4", "--exact"];
+    let (one, _) = drawn(&folder, &[&["0"][..], &view].concat());
+    let (two, _) = drawn(&folder, &[&["0", "-1 - x/100"][..], &view].concat());
+    assert_eq!(one.len(), 24);
+    assert_eq!(two.len(), one.len(), "{two:?}");
+}
+
+#[test]
+fn scattered_points_are_drawn_as_triangles() {
+    let folder = with_file("x,y,z\n0,0,0\n2,0,1\n2,2,0\n0,2,1\n1,1,3\n");
+    let (strokes, engine) = drawn(&folder, &["--points", "heights", "--view", "top", "--exact"]);
+    assert_eq!(engine, "roberts");
+    assert_eq!((strokes.len(), kinds(&strokes)), (8, vec!["mesh"]));
+    let levels = ["--points", "heights", "--lines", "levels", "--levels", "2,"];
+    let (strokes, _) = drawn(&folder, &levels);
+    assert_eq!(kinds(&strokes), ["level"]);
+}
+
+#[test]
+fn height_files_of_other_programs_stand_where_they_say() {
+    let esri =
+        "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -1\n4 5 6\n1 2 3\n";
+    let mut npy = b"\x93NUMPY\x01\x00".to_vec();
+    let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n";
+    npy.extend((header.len() as u16).to_le_bytes());
+    npy.extend(header.as_bytes());
+    npy.extend([1.0, 2.0, 3.0, 4.0, 5.0, 6.0_f32].iter().flat_map(|z| z.to_le_bytes()));
+    let mut picture = Vec::new();
+    let mut encoder = png::Encoder::new(&mut picture, 3, 2);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header().expect("a header");
+    let gray = [40000, 50000, 60000, 10000, 20000, 30000_u16];
+    let bytes: Vec<u8> = gray.iter().flat_map(|z| z.to_be_bytes()).collect();
+    writer.write_image_data(&bytes).expect("pixels");
+    writer.finish().expect("an end");
+    let camera = ["--eye", "0,0,90", "--target", "1,1,0", "--exact"];
+    let given = ["--x", "11:15", "--y", "21:23"];
+    let expected = {
+        let folder = with_file("1 2 3\n4 5 6\n");
+        segments(&drawn(&folder, &[&["--grid", "heights"], &camera[..], &given].concat()).0)
+    };
+    let check = |file: &[u8], more: &[&str]| {
+        let folder = with_file(file);
+        let (strokes, _) = drawn(&folder, &[&["--grid", "heights"], &camera[..], more].concat());
+        let got = segments(&strokes);
+        assert_eq!(got.len(), expected.len());
+        for (a, b) in got.iter().zip(&expected) {
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12), "{a:?} {b:?}");
+        }
+    };
+    check(esri.as_bytes(), &[]);
+    check(&npy, &given);
+    check(&picture, &[&given[..], &["--z-scale", "6.5535"]].concat());
+}
+
+#[test]
+fn axes_have_ticks_and_letters_outside_of_the_surface() {
+    let folder = with_file("");
+    let (strokes, engine) = drawn(
+        &folder,
+        &["sin(x)*y", "--title", "A title", "--levels", "3", "--lines", "both,levels"],
+    );
+    assert_eq!(
+        (kinds(&strokes), engine.as_str()),
+        (vec!["axis", "grid", "level", "text"], "roberts")
+    );
+    let (strokes, engine) = drawn(&folder, &["sin(x)*y", "--title", "A title"]);
+    assert_eq!((kinds(&strokes), engine.as_str()), (vec!["axis", "grid", "text"], "max-min"));
+    let of = |kind: &str| strokes.iter().filter(|s| s["kind"] == kind).count();
+    // Three axes with five, five and nine ticks; lettering takes more strokes than that.
+    assert!((12..30).contains(&of("axis")) && of("text") > 20, "{} {}", of("axis"), of("text"));
+}
+
+#[test]
+fn bad_input_is_told_in_one_line() {
+    let folder = with_file("1 2 3\n4 5\n");
+    let usage = |arguments: &[&str], message: &str| fails(&folder, arguments, 2, message);
+    usage(&["sine(x)"], "column 1: unknown name `sine`; did you mean `sin`?");
+    usage(&["x", "1 +"], "in formula 2, column");
+    usage(&["x", "--x", "3:1"], "the first number must be the smaller one");
+    usage(&["x", "--x", "1:1"], "the first number must be the smaller one");
+    usage(&["x", "--samples", "0"], "at least 2 samples are needed");
+    usage(&["x", "--samples", "1x5"], "at least 2 samples are needed");
+    usage(&["x", "--lines", "levels", "--levels", "0"], "at least 1 level");
+    usage(&["x", "--levels", "3"], "give --lines levels, too");
+    usage(&["x", "y", "--engine", "max-min"], "give --engine roberts or auto");
+    usage(&["--points", "heights", "--lines", "x"], "scattered points have no grid lines");
+    let run = |arguments: &[&str], message: &str| fails(&folder, arguments, 1, message);
+    run(&["x", "--samples", "1000000000"], "are more than 100000000");
+    run(&["1/0"], "no sample has a height");
+    run(&["(x < 100) ? 0/0 : x"], "no sample has a height");
+    run(&["abs(x) < 0.01 && abs(y) < 0.01 ? 1 : 0/0"], "no four neighboring samples");
+    run(&["--grid", "heights"], "line 2: 2 cells, but the first row has 3");
+    run(&["--grid", "missing"], "missing: No such file");
+    for (content, message) in [
+        (&b"1 2 3\n"[..], "1 samples along y"),
+        (b"1\n2\n", "1 samples along x"),
+        (b"nan nan\nnan nan\n", "no sample has a height"),
+        (b"", "no heights in the file"),
+        (b"\x93NUMPY\x01\x00\xff", "NPY: the file ends early"),
+        (b"\x89PNG\r\n\x1a\n", "PNG: "),
+        (b"ncols 2\nnrows 2\ncellsize 1\n1 2 3\n", "3 heights for 2 × 2 cells"),
+        (b"\xff\xfe\x00", "not a text of numbers"),
+    ] {
+        fails(&with_file(content), &["--grid", "heights"], 1, message);
+    }
+    for (content, message) in [
+        ("0 0 1\n1 1 1\n2 2 1\n", "3 points make no triangle"),
+        ("0 0 1\n0 0 2\n1 1 1\n2 5 1\n", "two points at x = 0, y = 0"),
+        ("0 0 1\n0 x 2\n", "line 2: expected the three numbers"),
+    ] {
+        fails(&with_file(content), &["--points", "heights"], 1, message);
+    }
+}
+
+fn fails(folder: &TempDir, arguments: &[&str], code: i32, message: &str) {
+    let output = run(folder, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    assert!(stderr.contains(message), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty());
+}
