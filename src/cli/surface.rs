@@ -13,15 +13,16 @@ use hiddenline::engines::surface::{
     GridPieces, Lines, Order, SurfaceError, floating_horizon, max_min, strokes,
 };
 use hiddenline::formula::{Formula, Variables};
-use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
-use hiddenline::stats::{Stats, peak_bytes, timed};
+use hiddenline::page::{Dash, PageOptions, PlotOptions};
+use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
 use hiddenline::surface::{Grid, Holes, Placement, read_csv};
 
 use super::args::{CameraArgs, OutputArgs, OutputOptions, PageArgs, ViewSource};
-use super::draw::{Notes, read_camera, report, source, write};
+use super::draw::read_camera;
+use super::paper::{Notes, Run};
 use super::progress::Progress;
-use super::{messages, values};
+use super::{Refused, config, source, values};
 
 /// Height of the drawn box as a part of the longer side of its base, with `--aspect box`.
 const BOX_HEIGHT: f64 = 0.4;
@@ -177,7 +178,7 @@ pub(super) struct Job {
 
 impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn job(self) -> Result<Job, String> {
+    pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { surface, camera, lines, page, output } = self;
         let input = match (surface.expression, surface.grid) {
             (Some(text), None) => {
@@ -208,7 +209,7 @@ impl SurfaceArgs {
             engine: lines.engine,
             page: page.options(),
             pen_width_mm: page.pen_width_mm(),
-            output: output.options()?,
+            output: output.options(lines.exact)?,
         })
     }
 }
@@ -249,25 +250,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     count(&mut stats, &grid, &pieces, &drawing);
     drop(pieces);
 
-    progress.stage("writing");
-    let (page, placed) = timed(&mut seconds.write, || -> Result<_, Box<dyn Error>> {
-        let page = Page::new(&drawing, &camera, &job.page)?;
-        let placed = page.plot(&drawing, plot_options(job));
-        write(&job.output, &drawing, &camera, &page, &placed.plot)?;
-        Ok((page, placed))
-    })?;
-    drop(progress);
-    seconds.total = start.elapsed().as_secs_f64();
     stats.seconds = seconds;
-    stats.peak_bytes = peak_bytes();
-    if !job.output.quiet {
-        let summary = format!("{}: {} × {} samples", title(job), xs.len(), ys.len());
-        report(&job.output, &Notes { warnings: Vec::new(), summary }, &page, &placed);
-    }
-    if job.output.stats {
-        messages::plain(serde_json::to_string(&stats)?);
-    }
-    Ok(())
+    let summary = format!("{}: {} × {} samples", title(job), xs.len(), ys.len());
+    let notes = Notes { warnings: Vec::new(), summary };
+    Run { output: &job.output, start, progress, stats, notes }.draw(
+        &drawing,
+        &camera,
+        &job.page,
+        plot_options(job),
+    )
 }
 
 fn read(job: &Job) -> Result<Grid, Box<dyn Error>> {
@@ -328,7 +319,8 @@ fn plot_options(job: &Job) -> PlotOptions {
         hidden: HiddenLines::None,
         dash: Dash { dash_mm: 2.5, gap_mm: 1.25 },
         title: title(job),
-        source: source(std::env::args_os().skip(1)),
+        pens: job.output.plotting.pens(job.pen_width_mm),
+        source: source::source(config::arguments()),
     }
 }
 
