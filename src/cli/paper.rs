@@ -36,11 +36,6 @@ pub(super) struct Run<'a> {
     pub(super) notes: Notes,
 }
 
-/// How strokes of a drawing are joined: the joints are those that the engines know.
-fn usual_for_drawings() -> Options {
-    Options { join_tolerance_mm: Some(0.0), ..Options::default() }
-}
-
 /// Refuses to send a picture to a terminal.
 pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
     if output.path.is_none() && output.format.is_binary() && io::stdout().is_terminal() {
@@ -74,7 +69,7 @@ impl Run<'_> {
                 Ok(json::write(drawing, camera, page.page_from_image, out)?)
             });
         }
-        self.plot(&page.paper.description(), placed.plot, &usual_for_drawings())
+        self.plot(&page.paper.description(), placed.plot, &Options::for_drawings())
     }
 
     /// Joins, orders and writes a page, and ends the run.

@@ -13,6 +13,7 @@ mod line_svg;
 mod optimize;
 mod oracle;
 mod plotter_formats;
+mod plotting;
 mod readers;
 mod scenes;
 mod surface;
