@@ -129,6 +129,7 @@ fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
         let page = Page::new(&drawing, &camera(), &PageOptions::default()).expect("a page");
         let options = PlotOptions {
             pen_width_mm: 0.3,
+            pens: Vec::new(),
             hidden: HiddenLines::None,
             dash: Dash::default(),
             title: String::new(),

@@ -60,6 +60,7 @@ pub(crate) fn plot() -> Result<Plot> {
     let drawing = draw(&surface, &camera, &options, mm_per_unit, &mut Stats::default());
     let options = PlotOptions {
         pen_width_mm: 0.3,
+        pens: Vec::new(),
         hidden: HiddenLines::None,
         dash: Dash::default(),
         title: "A Klein bottle".into(),

@@ -35,6 +35,7 @@ pub(crate) fn plot() -> Result<Plot> {
     dress(&mut drawing, bounds, Z_FACTOR, &camera, &titles);
     let options = PlotOptions {
         pen_width_mm: 0.3,
+        pens: Vec::new(),
         hidden: HiddenLines::None,
         dash: Dash::default(),
         title: "Peaks".into(),

@@ -15,17 +15,19 @@
 mod crop;
 mod dash;
 mod paper;
+mod pens;
 
 use glam::{DAffine2, DMat2, DVec2};
 use thiserror::Error;
 
 use crate::draw::HiddenLines;
-use crate::plot::{Layer, Pen, Plot, Polylines};
+use crate::plot::Plot;
 use crate::strokes::Drawing;
 use crate::view::{Camera, Projection};
 
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
+pub use self::pens::{Drawn, PenRule};
 
 /// Empty border of the page in millimetres, unless set otherwise.
 pub const DEFAULT_MARGIN_MM: f64 = 10.0;
@@ -131,8 +133,10 @@ pub struct Page {
 /// What the pens draw and how it is labeled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotOptions {
-    /// Width of the pens' lines in millimetres.
+    /// Width of the lines of pens without a rule, in millimetres.
     pub pen_width_mm: f64,
+    /// Which pens draw what.
+    pub pens: Vec<PenRule>,
     /// Hidden lines: none, dashed, or solid.
     pub hidden: HiddenLines,
     /// Lengths of dashes and gaps.
@@ -218,41 +222,38 @@ impl Page {
 
     /// Maps strokes onto the page, crops them to the margins and gives each to its pen.
     ///
-    /// Visible strokes are layer 1. Unless hidden lines are left out, hidden strokes are layer 2.
-    /// Strokes keep their order. O(points + dashes).
+    /// A stroke is drawn by the pen of its kind if it is visible and there is a rule for that, and
+    /// otherwise by the one of visible or hidden strokes: unless there are rules, visible ones are
+    /// layer 1 and hidden ones, if drawn, layer 2. Strokes keep their order. O(points + dashes).
     pub fn plot(&self, drawing: &Drawing, options: PlotOptions) -> PlacedPlot {
         let margin = DVec2::splat(self.margin_mm);
         let sheet = DVec2::new(self.paper.width_mm, self.paper.height_mm);
         let window = crop::Window { low: margin, high: sheet - margin, slack: CROP_SLACK_MM };
-        let mut visible = Polylines::default();
-        let mut hidden = Polylines::default();
+        let mut holder = pens::Holder::new(&options);
         let mut cropped = false;
         let mut on_page = Vec::new();
         for stroke in drawing.iter() {
+            if stroke.qi > 0 && options.hidden == HiddenLines::None {
+                continue;
+            }
             on_page.clear();
             on_page.extend(stroke.points.iter().map(|&p| self.page_from_image.transform_point2(p)));
-            cropped |= window.crop(&mut on_page, |piece| match (stroke.qi, options.hidden) {
-                (0, _) => visible.push(piece.iter().copied()),
-                (_, HiddenLines::None) => {}
-                (_, HiddenLines::Solid) => hidden.push(piece.iter().copied()),
-                (_, HiddenLines::Dashed) => {
-                    options.dash.for_each_dash(piece, |dash| hidden.push(dash.iter().copied()));
+            let dashed = stroke.qi > 0 && options.hidden == HiddenLines::Dashed;
+            let lines = holder.lines(stroke.kind, stroke.qi > 0);
+            cropped |= window.crop(&mut on_page, |piece| {
+                if dashed {
+                    options.dash.for_each_dash(piece, |dash| lines.push(dash.iter().copied()));
+                } else {
+                    lines.push(piece.iter().copied());
                 }
             });
-        }
-        let pen = |color: &str| Pen { width_mm: options.pen_width_mm, color: color.into() };
-        let mut layers =
-            vec![Layer { number: 1, name: "visible".into(), pen: pen("#000000"), lines: visible }];
-        if options.hidden != HiddenLines::None {
-            let pen = pen("#808080");
-            layers.push(Layer { number: 2, name: "hidden".into(), pen, lines: hidden });
         }
         let plot = Plot {
             width_mm: self.paper.width_mm,
             height_mm: self.paper.height_mm,
             title: options.title,
             source: options.source,
-            layers,
+            layers: holder.into_layers(),
         };
         PlacedPlot { plot, cropped }
     }

@@ -31,6 +31,34 @@ pub struct Stats {
     pub seconds: Seconds,
     /// What the engine counted.
     pub counts: Counts,
+    /// What the pens do, before and after the strokes were joined and ordered; none where there
+    /// are no pens.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plot: Option<PlotStats>,
+}
+
+/// What the pens do before and after joining and ordering.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct PlotStats {
+    /// As the strokes came.
+    pub before: PenWork,
+    /// As they are written.
+    pub after: PenWork,
+}
+
+/// What the pens do.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct PenWork {
+    /// Strokes.
+    pub strokes: usize,
+    /// Way with the pen down in meters.
+    pub down_m: f64,
+    /// Way with the pen up between strokes in meters.
+    pub up_m: f64,
+    /// Times the pen is raised.
+    pub lifts: usize,
+    /// Estimated minutes.
+    pub minutes: f64,
 }
 
 /// Wall time of each stage in seconds.

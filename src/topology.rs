@@ -65,9 +65,7 @@ impl Topology {
         Self::of_faces(mesh.corners(), mesh.face_starts(), mesh.positions().len())
     }
 
-    /// The same for bare triangles: their sides, each with the triangles along it.
-    ///
-    /// Corner `3 t + i` is the `i`-th of triangle `t`.
+    /// The same for bare triangles: their sides, each with the triangles along it as faces.
     pub fn of_triangles(triangles: &[[u32; 3]], n_vertices: usize) -> Self {
         let starts: Vec<u32> = (0..=triangles.len() as u32).map(|t| 3 * t).collect();
         Self::of_faces(triangles.as_flattened(), &starts, n_vertices)

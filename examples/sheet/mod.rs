@@ -38,6 +38,7 @@ impl Sheet {
         let drawing = draw(&scene, &camera, &self.draw, mm_per_unit, &mut Stats::default());
         let options = PlotOptions {
             pen_width_mm: 0.3,
+            pens: Vec::new(),
             hidden: self.draw.hidden,
             dash: Dash::default(),
             title: self.title.into(),

@@ -20,7 +20,9 @@ use hiddenline::writers::Format;
 use hiddenline::writers::png::Resolution;
 use hiddenline::writers::svg::StrokeElement;
 
-use super::values;
+use super::machine::Target;
+use super::plotting::{PlotArgs, Plotting};
+use super::{Refused, values};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -207,6 +209,8 @@ pub(super) struct PageArgs {
 #[command(next_help_heading = "Output")]
 pub(super) struct OutputArgs {
     /// File to write, its format given by the extension; `-` is standard output
+    ///
+    /// .svg; .hpgl, .plt; .gcode, .nc, .ngc; .pdf; .dxf; .png; .json
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Format of the output [default: by extension; svg on standard output]
@@ -228,8 +232,19 @@ pub(super) struct OutputArgs {
     #[arg(long)]
     stats: bool,
     /// Print nothing but errors
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
+    /// Print what was done in more detail
+    #[arg(short, long)]
+    verbose: bool,
+    /// Take warnings for errors: exit with 1 and write nothing
+    #[arg(long)]
+    strict: bool,
+    /// Take the settings called NAME in the configuration files
+    #[arg(long, value_name = "NAME")]
+    preset: Option<String>,
+    #[command(flatten)]
+    plotting: PlotArgs,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -299,8 +314,12 @@ enum LengthUnit {
 #[derive(Clone, Copy, ValueEnum)]
 enum FormatName {
     Svg,
-    Json,
+    Hpgl,
+    Gcode,
+    Pdf,
+    Dxf,
     Png,
+    Json,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -332,6 +351,10 @@ pub(super) struct OutputOptions {
     pub(super) threads: Option<usize>,
     pub(super) stats: bool,
     pub(super) quiet: bool,
+    pub(super) verbose: bool,
+    pub(super) strict: bool,
+    pub(super) plotting: Plotting,
+    pub(super) target: Target,
 }
 
 /// Where the camera comes from.
@@ -344,13 +367,13 @@ pub(super) enum ViewSource {
 
 impl DrawArgs {
     /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn job(self) -> Result<Job, String> {
+    pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { model, camera, lines, page, output } = self;
         if model.models.iter().filter(|path| is_dash(path)).count() > 1 {
             return Err("standard input (-) can be read only once".into());
         }
-        let output = output.options()?;
-        let json = output.format == Format::Json;
+        let output = output.options(lines.exact)?;
+        let apart_by_kind = output.format == Format::Json || output.plotting.has_pens_by_kind();
         Ok(Job {
             input_format: model.input_format.map(InputFormat::format),
             arrangement: Arrangement {
@@ -367,25 +390,40 @@ impl DrawArgs {
             page: page.options(),
             pen_width_mm: page.pen_width,
             dash: lines.dash,
-            draw: DrawOptions { apart_by_kind: json, ..lines.options() },
+            draw: DrawOptions { apart_by_kind, ..lines.options() },
             output,
         })
     }
 }
 
-fn is_dash(path: &Path) -> bool {
+pub(super) fn is_dash(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
 fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Format, String> {
     match (typed, path) {
-        (Some(FormatName::Svg), _) | (None, None) => Ok(Format::Svg),
-        (Some(FormatName::Json), _) => Ok(Format::Json),
-        (Some(FormatName::Png), _) => Ok(Format::Png),
+        (Some(name), _) => Ok(name.format()),
+        (None, None) => Ok(Format::Svg),
         (None, Some(path)) => Format::from_path(path).ok_or_else(|| {
-            let known = Format::ALL.map(|format| format!(".{}", format.name())).join(", ");
+            let known = Format::ALL.iter().flat_map(|format| format.extensions());
+            let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
+            let known = known.join(", ");
             format!("`{}` has none of the extensions {known}; give --format", path.display())
         }),
+    }
+}
+
+impl FormatName {
+    fn format(self) -> Format {
+        match self {
+            Self::Svg => Format::Svg,
+            Self::Hpgl => Format::Hpgl,
+            Self::Gcode => Format::Gcode,
+            Self::Pdf => Format::Pdf,
+            Self::Dxf => Format::Dxf,
+            Self::Png => Format::Png,
+            Self::Json => Format::Json,
+        }
     }
 }
 
@@ -442,10 +480,16 @@ impl LineArgs {
 
 impl OutputArgs {
     /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn options(self) -> Result<OutputOptions, String> {
+    ///
+    /// With `exact`, strokes are to be left as they are.
+    pub(super) fn options(self, exact: bool) -> Result<OutputOptions, Refused> {
         let path = self.output.filter(|path| !is_dash(path));
+        let format = output_format(self.format, path.as_deref())?;
+        let target = self.plotting.target(format)?;
         Ok(OutputOptions {
-            format: output_format(self.format, path.as_deref())?,
+            plotting: self.plotting.options(exact)?,
+            target,
+            format,
             path,
             svg_element: match self.svg_element {
                 SvgElement::Path => StrokeElement::Path,
@@ -459,6 +503,8 @@ impl OutputArgs {
             threads: self.threads.map(usize::from),
             stats: self.stats,
             quiet: self.quiet,
+            verbose: self.verbose,
+            strict: self.strict,
         })
     }
 }

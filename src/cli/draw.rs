@@ -1,33 +1,29 @@
 //! `hiddenline draw`: the stages from model files to a drawing's file.
 
 use std::error::Error;
-use std::ffi::OsString;
-use std::io::{self, IsTerminal, Write};
+use std::io;
 use std::path::Path;
 use std::time::Instant;
 
 use hiddenline::draw::draw;
 use hiddenline::mesh::{Mesh, Repairs};
-use hiddenline::page::{Page, PlacedPlot, PlotOptions};
-use hiddenline::plot::Plot;
+use hiddenline::page::{Page, PlotOptions};
 use hiddenline::read::read_file;
 use hiddenline::scene::Scene;
-use hiddenline::stats::{Stats, peak_bytes, timed};
+use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
 use hiddenline::view::Camera;
-use hiddenline::writers::png::PngError;
-use hiddenline::writers::{Format, json, png, svg};
+use hiddenline::writers::json;
 
-use super::args::{Job, OutputOptions, ViewSource};
+use super::args::{Job, ViewSource};
+use super::paper::{Notes, Run, check_terminal};
 use super::progress::Progress;
-use super::{messages, output};
+use super::{config, source};
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
-    if job.output.path.is_none() && job.output.format.is_binary() && io::stdout().is_terminal() {
-        return Err("a picture is not for the terminal; give -o FILE".into());
-    }
+    check_terminal(&job.output)?;
     if let Some(threads) = job.output.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
@@ -54,32 +50,12 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     count(&mut stats, &scene, &drawing);
     drop(scene);
 
-    progress.stage("writing");
-    let mut write_seconds = 0.0;
-    let (page, placed) = timed(&mut write_seconds, || -> Result<_, Box<dyn Error>> {
-        let page = Page::new(&drawing, &camera, &job.page)?;
-        let placed = page.plot(&drawing, plot_options(job));
-        write(&job.output, &drawing, &camera, &page, &placed.plot)?;
-        Ok((page, placed))
-    })?;
-    drop(progress);
-    stats.seconds.write += write_seconds;
-    stats.seconds.total = start.elapsed().as_secs_f64();
-    stats.peak_bytes = peak_bytes();
-    if !job.output.quiet {
-        report(&job.output, &notes, &page, &placed);
-    }
-    if job.output.stats {
-        messages::plain(serde_json::to_string(&stats)?);
-    }
-    Ok(())
-}
-
-/// What reading has to tell, for when all went well.
-#[derive(Default)]
-pub(super) struct Notes {
-    pub(super) warnings: Vec<String>,
-    pub(super) summary: String,
+    Run { output: &job.output, start, progress, stats, notes }.draw(
+        &drawing,
+        &camera,
+        &job.page,
+        plot_options(job),
+    )
 }
 
 fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
@@ -146,7 +122,8 @@ fn plot_options(job: &Job) -> PlotOptions {
         hidden: job.draw.hidden,
         dash: job.dash,
         title: title(job),
-        source: source(std::env::args_os().skip(1)),
+        pens: job.output.plotting.pens(job.pen_width_mm),
+        source: source::source(config::arguments()),
     }
 }
 
@@ -159,86 +136,4 @@ fn title(job: &Job) -> String {
         path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
     };
     job.models.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
-}
-
-/// The command as typed, but for what does not change the drawing: the same drawing has the same
-/// bytes, wherever it is written to and however many threads made it.
-pub(super) fn source(arguments: impl Iterator<Item = OsString>) -> String {
-    let mut command = "hiddenline".to_owned();
-    let mut arguments = arguments.map(|argument| argument.to_string_lossy().into_owned());
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "-o" | "--output" | "--threads" => {
-                arguments.next();
-            }
-            "-q" | "--quiet" | "--stats" => {}
-            other
-                if ["-o", "-q", "--output=", "--threads="].iter().any(|p| other.starts_with(p)) => {
-            }
-            other => {
-                command.push(' ');
-                command.push_str(&quoted(other));
-            }
-        }
-    }
-    command
-}
-
-/// The argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
-    if !argument.is_empty() && argument.chars().all(plain) {
-        argument.to_owned()
-    } else {
-        format!("'{}'", argument.replace('\'', "'\\''"))
-    }
-}
-
-pub(super) fn write(
-    options: &OutputOptions,
-    drawing: &Drawing,
-    camera: &Camera,
-    page: &Page,
-    plot: &Plot,
-) -> Result<(), Box<dyn Error>> {
-    let write = |out: &mut dyn Write| -> Result<(), PngError> {
-        match options.format {
-            Format::Svg => Ok(svg::write(plot, options.svg_element, out)?),
-            Format::Json => Ok(json::write(drawing, camera, page.page_from_image, out)?),
-            Format::Png => png::write(plot, options.resolution, out),
-        }
-    };
-    match &options.path {
-        None => Ok(output::write_to_stdout(write)?),
-        Some(path) => output::write_to_file(path, write)
-            .map_err(|error| format!("cannot write {}: {error}", path.display()).into()),
-    }
-}
-
-pub(super) fn report(
-    options: &OutputOptions,
-    notes: &Notes,
-    page: &Page,
-    PlacedPlot { plot, cropped }: &PlacedPlot,
-) {
-    for warning in &notes.warnings {
-        messages::warning(warning);
-    }
-    messages::plain(&notes.summary);
-    if plot.layers.iter().all(|layer| layer.lines.is_empty()) {
-        messages::warning("the drawing is empty: nothing is in view");
-    }
-    if *cropped && options.format != Format::Json {
-        messages::warning("lines were cut off at the margins");
-    }
-    let name = options.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
-    let pens: String = plot
-        .layers
-        .iter()
-        .map(|layer| {
-            let metres = layer.lines.length_mm() / 1000.0;
-            format!("  {} {} strokes {metres:.1} m", layer.name, layer.lines.len())
-        })
-        .collect();
-    messages::plain(format_args!("{name}  {}{pens}", page.paper.description()));
 }

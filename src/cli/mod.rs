@@ -1,10 +1,16 @@
 //! The command line: typed arguments to a validated job, and the job to a file.
 
 mod args;
+mod config;
 mod draw;
+mod machine;
 mod messages;
+mod optimize;
 mod output;
+mod paper;
+mod plotting;
 mod progress;
+mod source;
 mod surface;
 mod values;
 
@@ -13,10 +19,11 @@ use std::io;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use self::args::DrawArgs;
+use self::optimize::OptimizeArgs;
 use self::surface::SurfaceArgs;
 
 /// Exact hidden-line drawings of 3D models, for print and pen plotters
@@ -25,6 +32,16 @@ use self::surface::SurfaceArgs;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// When messages are colored; NO_COLOR and CLICOLOR_FORCE are heeded too
+    #[arg(long, global = true, value_enum, default_value = "auto")]
+    color: Color,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
 }
 
 #[derive(Subcommand)]
@@ -33,6 +50,13 @@ enum Command {
     Draw(Box<DrawArgs>),
     /// Draw a surface z = f(x, y) by its grid lines, the hidden parts removed
     Surface(Box<SurfaceArgs>),
+    /// Join and order the strokes of any line SVG for a plotter
+    Optimize(Box<OptimizeArgs>),
+    /// Show settings from configuration files and the environment
+    Config {
+        #[command(subcommand)]
+        command: ConfigCommand,
+    },
     /// Print a script that completes commands in a shell
     Completions {
         /// The shell
@@ -45,17 +69,60 @@ enum Command {
     },
 }
 
+#[derive(Subcommand)]
+enum ConfigCommand {
+    /// Print the files that are read and the settings that hold
+    Show {
+        /// With the settings of this preset
+        #[arg(long, value_name = "NAME")]
+        preset: Option<String>,
+    },
+}
+
+/// Why a command does not start.
+enum Refused {
+    /// Arguments do not go together.
+    Usage(String),
+    /// Something that they name is not there or no good.
+    Failed(Box<dyn Error>),
+}
+
+impl From<String> for Refused {
+    fn from(message: String) -> Self {
+        Self::Usage(message)
+    }
+}
+
+impl From<&str> for Refused {
+    fn from(message: &str) -> Self {
+        Self::Usage(message.to_owned())
+    }
+}
+
+impl From<machine::MachineError> for Refused {
+    fn from(error: machine::MachineError) -> Self {
+        Self::Failed(error.into())
+    }
+}
+
 /// Runs the command that was typed.
 pub(crate) fn run() -> ExitCode {
-    let result = match Cli::parse().command {
-        Command::Draw(args) => match args.job() {
-            Ok(job) => draw::run(&job),
-            Err(message) => bad_usage("draw", message),
-        },
-        Command::Surface(args) => match args.job() {
-            Ok(job) => surface::run(&job),
-            Err(message) => bad_usage("surface", message),
-        },
+    let typed = match config::with_settings(Cli::command()) {
+        Ok(matches) => Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()),
+        Err(error) => return failed(error.as_ref()),
+    };
+    match typed.color {
+        Color::Auto => {}
+        Color::Always => anstream::ColorChoice::Always.write_global(),
+        Color::Never => anstream::ColorChoice::Never.write_global(),
+    }
+    let result = match typed.command {
+        Command::Draw(args) => started("draw", args.job(), draw::run),
+        Command::Surface(args) => started("surface", args.job(), surface::run),
+        Command::Optimize(args) => started("optimize", args.job(), optimize::run),
+        Command::Config { command: ConfigCommand::Show { preset } } => {
+            config::show(preset.as_deref())
+        }
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "hiddenline", &mut script);
@@ -66,10 +133,25 @@ pub(crate) fn run() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_broken_pipe(error.as_ref()) => ExitCode::SUCCESS,
-        Err(error) => {
-            messages::error(&error.to_string());
-            ExitCode::FAILURE
-        }
+        Err(error) => failed(error.as_ref()),
+    }
+}
+
+fn failed(error: &dyn Error) -> ExitCode {
+    messages::error(&error.to_string());
+    ExitCode::FAILURE
+}
+
+/// Runs a job, or says what is wrong with it.
+fn started<J>(
+    name: &str,
+    job: Result<J, Refused>,
+    run: impl FnOnce(&J) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    match job {
+        Ok(job) => run(&job),
+        Err(Refused::Usage(message)) => bad_usage(name, message),
+        Err(Refused::Failed(error)) => Err(error),
     }
 }
 

@@ -16,7 +16,7 @@ use hiddenline::engines::surface::{
 };
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
-use hiddenline::stats::{Stats, peak_bytes, timed};
+use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
 use hiddenline::surface::{
     Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, close_seams, delaunay, evenly,
@@ -26,9 +26,10 @@ use hiddenline::view::Camera;
 use hiddenline::writers::Format;
 
 use super::args::{CameraArgs, OutputArgs, OutputOptions, PageArgs, ViewSource};
-use super::draw::{Notes, read_camera, report, source, write};
+use super::draw::read_camera;
+use super::paper::{Notes, Run};
 use super::progress::Progress;
-use super::{messages, values};
+use super::{Refused, config, source, values};
 
 /// Height of the drawn box as a part of the longer side of its base, with `--aspect box`.
 const BOX_HEIGHT: f64 = 0.4;
@@ -280,7 +281,7 @@ pub(super) struct Job {
 
 impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn job(self) -> Result<Job, String> {
+    pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { surface, camera, lines, dressing, page, output } = self;
         let samples = surface.samples.unwrap_or((DEFAULT_SAMPLES, DEFAULT_SAMPLES));
         let parse = |texts: &[String], variables| {
@@ -361,7 +362,7 @@ impl SurfaceArgs {
             titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },
             page: page.options(),
             pen_width_mm: page.pen_width_mm(),
-            output: output.options()?,
+            output: output.options(lines.exact)?,
         })
     }
 }
@@ -391,29 +392,16 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
     }
-    seconds = stats.seconds;
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
-
-    progress.stage("writing");
-    let (page, placed) = timed(&mut seconds.write, || -> Result<_, Box<dyn Error>> {
-        let page = Page::new(&drawing, &camera, &job.page)?;
-        let placed = page.plot(&drawing, plot_options(job));
-        write(&job.output, &drawing, &camera, &page, &placed.plot)?;
-        Ok((page, placed))
-    })?;
-    drop(progress);
-    seconds.total = start.elapsed().as_secs_f64();
-    stats.seconds = seconds;
-    stats.peak_bytes = peak_bytes();
-    if !job.output.quiet {
-        let summary = format!("{}: {}", title(job), surface.described());
-        report(&job.output, &Notes { warnings: Vec::new(), summary }, &page, &placed);
-    }
-    if job.output.stats {
-        messages::plain(serde_json::to_string(&stats)?);
-    }
-    Ok(())
+    let notes =
+        Notes { warnings: Vec::new(), summary: format!("{}: {}", title(job), surface.described()) };
+    Run { output: &job.output, start, progress, stats, notes }.draw(
+        &drawing,
+        &camera,
+        &job.page,
+        plot_options(job),
+    )
 }
 
 /// The surface that is drawn.
@@ -648,7 +636,8 @@ fn plot_options(job: &Job) -> PlotOptions {
         hidden: HiddenLines::None,
         dash: Dash { dash_mm: 2.5, gap_mm: 1.25 },
         title: title(job),
-        source: source(std::env::args_os().skip(1)),
+        pens: job.output.plotting.pens(job.pen_width_mm),
+        source: source::source(config::arguments()),
     }
 }
 

@@ -1,8 +1,11 @@
 //! Parsers of single values, with messages that say what is expected.
 
+use std::time::Duration;
+
 use glam::DVec3;
 use hiddenline::classify::LineSelection;
-use hiddenline::page::{Dash, parse_length_mm};
+use hiddenline::optimize::Effort;
+use hiddenline::page::{Dash, Drawn, parse_length_mm};
 use hiddenline::strokes::StrokeKind;
 
 /// A finite number.
@@ -51,6 +54,16 @@ pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     length(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("must be above 0".into()) })
 }
 
+/// A length in millimetres, above 0, or in meters as in `10m`.
+pub(super) fn distance(text: &str) -> Result<f64, String> {
+    let meters =
+        text.trim().strip_suffix('m').filter(|t| t.ends_with(|c: char| c != 'm' && c != 'c'));
+    match meters {
+        Some(meters) => positive(meters).map(|meters| meters * 1000.0),
+        None => positive_length(text),
+    }
+}
+
 /// Lengths of dash and gap.
 pub(super) fn dash(text: &str) -> Result<Dash, String> {
     let both = || "give the lengths of dash and gap in mm, as in 2.5,1.25".to_owned();
@@ -87,4 +100,76 @@ pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
             }
         })
     })
+}
+
+/// How long to search for a short way: a name, or seconds as in `10s`.
+pub(super) fn effort(text: &str) -> Result<Effort, String> {
+    match text.trim() {
+        "none" => Ok(Effort::None),
+        "fast" => Ok(Effort::Fast),
+        "best" => Ok(Effort::Best),
+        other => {
+            let seconds = other.strip_suffix('s').and_then(|seconds| seconds.parse::<f64>().ok());
+            seconds
+                .filter(|seconds| *seconds > 0.0)
+                .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+                .map(Effort::Within)
+                .ok_or_else(|| "give none, fast, best, or seconds as in 10s".to_owned())
+        }
+    }
+}
+
+/// A pen as it is typed: what it draws, its number, and what else is said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PenText {
+    pub(super) drawn: Drawn,
+    pub(super) number: u32,
+    pub(super) width_mm: Option<f64>,
+    /// `#rrggbb`.
+    pub(super) color: Option<String>,
+}
+
+/// A pen as `visible=1:0.3mm:black`; width and color may be left out.
+pub(super) fn pen(text: &str) -> Result<PenText, String> {
+    let example = || "give a pen as in visible=1:0.3mm:black".to_owned();
+    let (drawn, rest) = text.split_once('=').ok_or_else(example)?;
+    let mut parts = rest.split(':').map(str::trim);
+    let number = parts.next().unwrap_or_default().parse().ok();
+    let number = number.filter(|n| (1..=1000).contains(n));
+    let pen = PenText {
+        drawn: drawn_by_pen(drawn.trim())?,
+        number: number.ok_or("pens have numbers from 1 to 1000, as in visible=1:0.3mm:black")?,
+        width_mm: parts.next().filter(|w| !w.is_empty()).map(positive_length).transpose()?,
+        color: parts.next().filter(|c| !c.is_empty()).map(color).transpose()?,
+    };
+    if parts.next().is_some() { Err(example()) } else { Ok(pen) }
+}
+
+fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
+    const KINDS: [StrokeKind; 12] = [
+        StrokeKind::Silhouette,
+        StrokeKind::Crease,
+        StrokeKind::Boundary,
+        StrokeKind::Nonmanifold,
+        StrokeKind::Intersection,
+        StrokeKind::Material,
+        StrokeKind::Mesh,
+        StrokeKind::Grid,
+        StrokeKind::Level,
+        StrokeKind::Axis,
+        StrokeKind::Text,
+        StrokeKind::Hatch,
+    ];
+    let all = || [Drawn::Visible, Drawn::Hidden].into_iter().chain(KINDS.map(Drawn::Kind));
+    all().find(|drawn| drawn.name() == name).ok_or_else(|| {
+        let names = all().map(Drawn::name);
+        format!("no pen draws `{name}`{}", super::machine::suggestion(name, names))
+    })
+}
+
+/// A color by name or as `#rgb`, `#rrggbb`, `rgb(…)`; the result is `#rrggbb`.
+fn color(text: &str) -> Result<String, String> {
+    let color: svgtypes::Color =
+        text.parse().map_err(|_| format!("`{text}` is no color; give a name or #rrggbb"))?;
+    Ok(format!("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue))
 }

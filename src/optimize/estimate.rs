@@ -19,6 +19,7 @@ use glam::DVec2;
 use serde::Deserialize;
 
 use crate::plot::{Plot, Polylines};
+use crate::stats::PenWork;
 
 /// How a machine moves; millimetres and seconds.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -112,6 +113,17 @@ impl Estimate {
     /// Minutes from the first stroke to the last lift.
     pub fn minutes(&self) -> f64 {
         self.seconds / 60.0
+    }
+
+    /// The same in meters and minutes.
+    pub fn work(&self) -> PenWork {
+        PenWork {
+            strokes: self.strokes,
+            down_m: self.down_mm / 1000.0,
+            up_m: self.up_mm / 1000.0,
+            lifts: self.lifts,
+            minutes: self.minutes(),
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::plot::Polylines;
 /// Ink as vertices and straight edges, nothing twice.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Graph {
-    /// Page positions in millimetres, by growing x, then y.
+    /// Page positions in millimetres, nearly by growing x, then y.
     pub positions: Vec<DVec2>,
     /// Pairs of different vertices, the lower one first, in growing order, each pair once.
     pub edges: Vec<[u32; 2]>,
@@ -22,9 +22,11 @@ pub struct Graph {
 pub enum Joints<'a> {
     /// Points within this distance in millimetres are one; zero joins equal points only.
     ///
-    /// Points are visited by growing x, then y. Each moves to the nearest point kept so far that
-    /// is within the distance, or is kept itself. So no point moves farther than the distance,
-    /// however long the chains of near points are, and the order of the strokes does not matter.
+    /// Points are visited by growing x, then y. Each joins the nearest group whose first point is
+    /// within the distance and whose box then has no longer diagonal than that, or begins a group.
+    /// A group's joint is the middle of its box. So no point moves farther than half of the
+    /// distance, however long the chains of near points are, and the order of the strokes does not
+    /// matter.
     Near(f64),
     /// Numbers for every point of every polyline, in order: equal numbers are one point, the
     /// first of them. Equal points are joined as well. Points without a number are ignored.
@@ -118,7 +120,7 @@ fn joined_points(lines: &Polylines, joints: Joints<'_>) -> Vec<DVec2> {
     points
 }
 
-/// Kept positions in order, and for every point the number of the one it moves to.
+/// Positions of the joints, and for every point the number of its joint.
 fn weld(points: &[DVec2], tolerance: f64) -> (Vec<DVec2>, Vec<u32>) {
     let mut order: Vec<u32> =
         (0..points.len() as u32).filter(|&i| points[i as usize].is_finite()).collect();
@@ -127,7 +129,7 @@ fn weld(points: &[DVec2], tolerance: f64) -> (Vec<DVec2>, Vec<u32>) {
         let (a, b) = (key(i), key(j));
         a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(&j))
     });
-    let mut kept: Vec<DVec2> = Vec::new();
+    let mut groups: Vec<Group> = Vec::new();
     let mut vertex_of = vec![NONE; points.len()];
     let mut cells = Cells::new(tolerance);
     let mut last: Option<(DVec2, u32)> = None;
@@ -135,20 +137,45 @@ fn weld(points: &[DVec2], tolerance: f64) -> (Vec<DVec2>, Vec<u32>) {
         let p = key(i);
         let vertex = match last {
             Some((q, vertex)) if q == p => vertex,
-            _ => cells.nearest(&kept, p).unwrap_or_else(|| {
-                kept.push(p);
-                let vertex = kept.len() as u32 - 1;
-                cells.insert(p, vertex);
-                vertex
-            }),
+            _ => match cells.nearest(&groups, p) {
+                Some(vertex) => {
+                    let group = &mut groups[vertex as usize];
+                    (group.low, group.high) = (group.low.min(p), group.high.max(p));
+                    vertex
+                }
+                None => {
+                    groups.push(Group { first: p, low: p, high: p });
+                    let vertex = groups.len() as u32 - 1;
+                    cells.insert(p, vertex);
+                    vertex
+                }
+            },
         };
         last = Some((p, vertex));
         vertex_of[i as usize] = vertex;
     }
-    (kept, vertex_of)
+    (groups.iter().map(Group::middle).collect(), vertex_of)
 }
 
-/// Kept points by square cells as wide as the tolerance, so that near ones lie in nine cells.
+/// Points that are one joint.
+struct Group {
+    first: DVec2,
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Group {
+    /// The very point where all are equal.
+    fn middle(&self) -> DVec2 {
+        if self.low == self.high { self.first } else { self.low.midpoint(self.high) }
+    }
+
+    fn has_room(&self, p: DVec2, tolerance: f64) -> bool {
+        self.low.min(p).distance_squared(self.high.max(p)) <= tolerance * tolerance
+    }
+}
+
+/// First points of groups by square cells as wide as the tolerance, so that near ones lie in nine cells.
 struct Cells {
     size: f64,
     heads: FxHashMap<(i64, i64), u32>,
@@ -172,8 +199,9 @@ impl Cells {
         }
     }
 
-    /// The kept point nearest to `p` within the cell size, the earlier one of two as near.
-    fn nearest(&self, kept: &[DVec2], p: DVec2) -> Option<u32> {
+    /// The group with room for `p` whose first point is nearest to it within the cell size, the
+    /// earlier one of two as near.
+    fn nearest(&self, groups: &[Group], p: DVec2) -> Option<u32> {
         if self.size <= 0.0 {
             return None;
         }
@@ -184,8 +212,10 @@ impl Cells {
             for row in [y.saturating_sub(1), y, y.saturating_add(1)] {
                 let mut vertex = self.heads.get(&(column, row)).copied().unwrap_or(NONE);
                 while vertex != NONE {
-                    let distance = kept[vertex as usize].distance_squared(p);
+                    let group = &groups[vertex as usize];
+                    let distance = group.first.distance_squared(p);
                     if distance <= self.size * self.size
+                        && group.has_room(p, self.size)
                         && best.is_none_or(|(d, v)| distance < d || (distance == d && vertex < v))
                     {
                         best = Some((distance, vertex));

@@ -40,6 +40,15 @@ pub mod estimate;
 mod split;
 pub use split::split_by_distance;
 
+/// Joints of strokes in a file are this close, unless set otherwise: coordinates with three decimals
+/// put a point that two strokes share up to two micrometers apart, along an axis. The last nanometer
+/// is for binary numbers, which only come near to decimal ones. Ink moves by half of it at most.
+pub const JOIN_TOLERANCE_MM: f64 = 0.002_001;
+
+/// Ink this close to other ink lies on it in drawings, unless set otherwise: half of the last digit
+/// that is written.
+pub const OVERLAP_MM: f64 = 0.0005;
+
 /// How long to search for a short way between the strokes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
@@ -90,11 +99,21 @@ pub struct Options {
     pub effort: Effort,
 }
 
+impl Options {
+    /// For drawings that were just made: joints are equal points, and ink that deviates by less than
+    /// is written overlaps.
+    pub fn for_drawings() -> Self {
+        Self { join_tolerance_mm: Some(0.0), overlap_mm: OVERLAP_MM, ..Self::default() }
+    }
+}
+
 impl Default for Options {
+    /// For strokes from a file: joints are points that are near, and only exactly collinear ink
+    /// overlaps, since rounded coordinates put distinct lines near each other too.
     fn default() -> Self {
         Self {
-            join_tolerance_mm: Some(0.001),
-            overlap_mm: 0.0005,
+            join_tolerance_mm: Some(JOIN_TOLERANCE_MM),
+            overlap_mm: 0.0,
             simplify_mm: 0.0,
             shortest_mm: 0.0,
             effort: Effort::Fast,

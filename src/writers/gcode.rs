@@ -124,6 +124,15 @@ impl Profile {
         profiles.remove(name).ok_or(Error::UnknownProfile { name: name.to_owned(), known })
     }
 
+    /// Names of the built-in profiles.
+    ///
+    /// # Errors
+    /// None but for a defect in the profiles themselves.
+    pub fn names() -> Result<Vec<String>, Error> {
+        let profiles = profiles_from(include_str!("gcode_profiles.toml"))?;
+        Ok(profiles.into_keys().collect())
+    }
+
     /// Reads one profile from TOML.
     ///
     /// # Errors

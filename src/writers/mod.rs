@@ -17,33 +17,60 @@ use std::path::Path;
 pub enum Format {
     /// Scalable vector graphics in millimetres, one layer a pen.
     Svg,
-    /// The strokes in image coordinates, for tests and scripts.
-    Json,
+    /// Instructions for pen plotters.
+    Hpgl,
+    /// Instructions for machines run by GRBL, Marlin and the like.
+    Gcode,
+    /// A page for print.
+    Pdf,
+    /// Polylines for CAD and CAM programs.
+    Dxf,
     /// A picture of the page.
     Png,
+    /// The strokes in image coordinates, for tests and scripts.
+    Json,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 3] = [Self::Svg, Self::Json, Self::Png];
+    pub const ALL: [Self; 7] =
+        [Self::Svg, Self::Hpgl, Self::Gcode, Self::Pdf, Self::Dxf, Self::Png, Self::Json];
 
-    /// The name on the command line, which is also the extension of file names.
+    /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
-            Self::Json => "json",
+            Self::Hpgl => "hpgl",
+            Self::Gcode => "gcode",
+            Self::Pdf => "pdf",
+            Self::Dxf => "dxf",
             Self::Png => "png",
+            Self::Json => "json",
+        }
+    }
+
+    /// Extensions of file names, without the dot.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Svg => &["svg"],
+            Self::Hpgl => &["hpgl", "plt"],
+            Self::Gcode => &["gcode", "nc", "ngc"],
+            Self::Pdf => &["pdf"],
+            Self::Dxf => &["dxf"],
+            Self::Png => &["png"],
+            Self::Json => &["json"],
         }
     }
 
     /// The format that a file name's extension stands for.
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
-        Self::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.name()))
+        let is_known = |known: &&str| extension.eq_ignore_ascii_case(known);
+        Self::ALL.into_iter().find(|format| format.extensions().iter().any(|e| is_known(&e)))
     }
 
     /// Whether the format is bytes rather than text.
     pub fn is_binary(self) -> bool {
-        self == Self::Png
+        matches!(self, Self::Png | Self::Pdf)
     }
 }

@@ -14,6 +14,7 @@ mod line_svg;
 mod optimize;
 mod oracle;
 mod plotter_formats;
+mod plotting;
 mod readers;
 mod scenes;
 mod strokes;

@@ -36,6 +36,7 @@ fn drawing(strokes: &[&[DVec2]]) -> Drawing {
 fn options(hidden: HiddenLines) -> PlotOptions {
     PlotOptions {
         pen_width_mm: 0.3,
+        pens: Vec::new(),
         hidden,
         dash: Dash::default(),
         title: "a <title> & more".into(),

@@ -213,7 +213,7 @@ fn a_torus_has_no_open_border() {
         let mut mesh = LinedMesh::default();
         mesh.push_lattice(25, points, &BOTH);
         let scene = mesh.into_scene().expect("a scene").scene;
-        scene.topology().count_edges(scene.mesh()).boundary
+        scene.topology().count_edges().boundary
     };
     assert!(borders(&points) > 0);
     close_seams(25, &mut points);

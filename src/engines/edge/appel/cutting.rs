@@ -36,7 +36,6 @@ pub(super) struct CuttingEdge {
 #[derive(Debug)]
 pub(super) struct Sides<'a> {
     table: Cow<'a, Topology>,
-    triangles: &'a [[u32; 3]],
     /// The faces are the triangles, so that sides have the numbers of edges.
     sides_are_edges: bool,
 }
@@ -54,7 +53,7 @@ impl<'a> Sides<'a> {
             let n_vertices = scene.mesh().positions().len();
             Cow::Owned(Topology::of_triangles(triangles, n_vertices))
         };
-        Self { table, triangles, sides_are_edges }
+        Self { table, sides_are_edges }
     }
 
     /// The triangles along an edge, each with whether it runs along it upwards.
@@ -76,11 +75,7 @@ impl<'a> Sides<'a> {
     }
 
     fn along(&self, side: u32) -> impl Iterator<Item = (u32, bool)> {
-        self.table.uses(side).iter().map(|&corner| {
-            let (triangle, i) = (corner / 3, corner as usize % 3);
-            let corners = self.triangles[triangle as usize];
-            (triangle, corners[i] < corners[(i + 1) % 3])
-        })
+        self.table.uses(side).iter().map(|along| (along.face(), along.runs_upwards()))
     }
 
     /// How many of the triangles that count lie on the left and on the right of a side, and one of

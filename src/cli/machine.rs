@@ -1,0 +1,131 @@
+//! Which machine draws: what it understands, and how it moves.
+
+use std::path::{Path, PathBuf};
+
+use hiddenline::optimize::estimate::Motion;
+use hiddenline::writers::{Format, gcode, hpgl};
+use thiserror::Error;
+
+/// The plotter that HPGL is for, unless set otherwise.
+const DEFAULT_PLOTTER: &str = "hp7475a";
+/// The profile of G-code, unless set otherwise.
+const DEFAULT_GCODE: &str = "grbl-servo";
+/// How alike names are that one may have been typed for the other; Jaro-Winkler, at most 1.
+const ALIKE: f64 = 0.75;
+
+/// What a file is written for.
+pub(super) struct Target {
+    pub(super) device: Device,
+    pub(super) motion: Motion,
+}
+
+/// A machine that has a say in what is written.
+pub(super) enum Device {
+    /// None: the format is the same for all.
+    Any,
+    Plotter(hpgl::Machine),
+    Gcode(Box<gcode::Profile>),
+}
+
+/// Why there is no machine to write for.
+#[derive(Debug, Error)]
+pub(super) enum MachineError {
+    #[error("there is no machine called `{name}`{suggestion}")]
+    Unknown { name: String, suggestion: String },
+    #[error("`{name}` is not a machine for {format}{suggestion}")]
+    OtherFormat { name: String, format: &'static str, suggestion: String },
+    #[error("cannot read {}: {error}", path.display())]
+    Read { path: PathBuf, error: std::io::Error },
+    #[error("{}: {error}", path.display())]
+    Profile { path: PathBuf, error: gcode::Error },
+    #[error(transparent)]
+    Plotters(#[from] hpgl::Error),
+    #[error(transparent)]
+    Gcode(#[from] gcode::Error),
+}
+
+impl Target {
+    /// Finds the machine called `name`, or the usual one for `format`.
+    pub(super) fn new(
+        format: Format,
+        name: Option<&str>,
+        gcode_profile: Option<&Path>,
+    ) -> Result<Self, MachineError> {
+        if let Some(path) = gcode_profile {
+            let profile = read_profile(path)?;
+            let motion = profile.motion.clone();
+            let device = match format {
+                Format::Gcode => Device::Gcode(Box::new(profile)),
+                _ => Self::new(format, None, None)?.device,
+            };
+            return Ok(Self { device, motion });
+        }
+        let plotters = hpgl::machines()?;
+        let profiles = gcode::Profile::names()?;
+        let plotter = |name: &str| plotters.iter().find(|p| p.name.eq_ignore_ascii_case(name));
+        let profile = |name: &str| profiles.iter().find(|p| p.eq_ignore_ascii_case(name));
+        let wanted = name.unwrap_or(match format {
+            Format::Hpgl => DEFAULT_PLOTTER,
+            Format::Gcode => DEFAULT_GCODE,
+            _ => "saxi",
+        });
+        let found = match (plotter(wanted), profile(wanted)) {
+            (Some(plotter), _) => {
+                Self { device: Device::Plotter(plotter.clone()), motion: Motion::default() }
+            }
+            (None, Some(name)) => {
+                let profile = gcode::Profile::named(name)?;
+                let motion = profile.motion.clone();
+                Self { device: Device::Gcode(Box::new(profile)), motion }
+            }
+            (None, None) => match Motion::named(&wanted.to_ascii_lowercase()) {
+                Some(motion) => Self { device: Device::Any, motion },
+                None => {
+                    let plotters = plotters.iter().map(|p| p.name.as_str());
+                    let known = Motion::NAMES.into_iter().chain(plotters);
+                    let known = known.chain(profiles.iter().map(String::as_str));
+                    return Err(MachineError::Unknown {
+                        suggestion: suggestion(wanted, known),
+                        name: wanted.to_owned(),
+                    });
+                }
+            },
+        };
+        let unfit = |suggestion| MachineError::OtherFormat {
+            name: wanted.to_owned(),
+            format: format.name(),
+            suggestion,
+        };
+        match (format, &found.device) {
+            (Format::Hpgl, Device::Plotter(_)) | (Format::Gcode, Device::Gcode(_)) => Ok(found),
+            (Format::Hpgl, _) => {
+                Err(unfit(suggestion(wanted, plotters.iter().map(|p| p.name.as_str()))))
+            }
+            (Format::Gcode, _) => {
+                Err(unfit(suggestion(wanted, profiles.iter().map(String::as_str))))
+            }
+            _ => Ok(Self { device: Device::Any, ..found }),
+        }
+    }
+}
+
+fn read_profile(path: &Path) -> Result<gcode::Profile, MachineError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| MachineError::Read { path: path.to_owned(), error })?;
+    gcode::Profile::from_toml(&text)
+        .map_err(|error| MachineError::Profile { path: path.to_owned(), error })
+}
+
+/// What may have been meant, and everything that there is, as the end of a message.
+pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.collect();
+    let alike = |other: &str| strsim::jaro_winkler(&name.to_ascii_lowercase(), other);
+    let mut near: Vec<&str> = known.iter().copied().filter(|k| alike(k) >= ALIKE).collect();
+    near.sort_by(|a, b| alike(b).total_cmp(&alike(a)));
+    near.truncate(3);
+    let known = known.join(", ");
+    match near.as_slice() {
+        [] => format!("; there are {known}"),
+        near => format!("; did you mean {}? There are {known}", near.join(" or ")),
+    }
+}

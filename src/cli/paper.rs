@@ -1,0 +1,237 @@
+//! From a drawing to a file: placed on the page, joined and ordered, written, told about.
+
+use std::error::Error;
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use hiddenline::optimize::{Effort, Options};
+use hiddenline::page::{Page, PageOptions, PlotOptions};
+use hiddenline::plot::Plot;
+use hiddenline::stats::{PenWork, PlotStats, Stats, peak_bytes, timed};
+use hiddenline::strokes::Drawing;
+use hiddenline::view::Camera;
+use hiddenline::writers::png::PngError;
+use hiddenline::writers::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
+
+use super::args::OutputOptions;
+use super::machine::Device;
+use super::plotting::Finished;
+use super::progress::Progress;
+use super::{messages, output};
+
+/// What reading has to tell, for when all went well.
+#[derive(Default)]
+pub(super) struct Notes {
+    pub(super) warnings: Vec<String>,
+    pub(super) summary: String,
+}
+
+/// A run of a command, from its start to what is told at the end.
+pub(super) struct Run<'a> {
+    pub(super) output: &'a OutputOptions,
+    pub(super) start: Instant,
+    pub(super) progress: Progress,
+    pub(super) stats: Stats,
+    pub(super) notes: Notes,
+}
+
+/// Refuses to send a picture to a terminal.
+pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
+    if output.path.is_none() && output.format.is_binary() && io::stdout().is_terminal() {
+        return Err("this format is not for the terminal; give -o FILE".into());
+    }
+    Ok(())
+}
+
+impl Run<'_> {
+    /// Puts `drawing` on paper and ends the run.
+    pub(super) fn draw(
+        mut self,
+        drawing: &Drawing,
+        camera: &Camera,
+        page: &PageOptions,
+        plot: PlotOptions,
+    ) -> Result<(), Box<dyn Error>> {
+        let is_json = self.output.format == Format::Json;
+        self.progress.stage("placing");
+        let mut seconds = self.stats.seconds;
+        let (page, placed) = timed(&mut seconds.write, || -> Result<_, Box<dyn Error>> {
+            let page = Page::new(drawing, camera, page)?;
+            Ok((page, page.plot(drawing, plot)))
+        })?;
+        if placed.cropped && !is_json {
+            self.notes.warnings.push("lines were cut off at the margins".into());
+        }
+        self.stats.seconds = seconds;
+        if is_json {
+            return self.write(&page.paper.description(), placed.plot, None, |out| {
+                Ok(json::write(drawing, camera, page.page_from_image, out)?)
+            });
+        }
+        self.plot(&page.paper.description(), placed.plot, &Options::for_drawings())
+    }
+
+    /// Joins, orders and writes a page, and ends the run.
+    pub(super) fn plot(
+        mut self,
+        paper: &str,
+        plot: Plot,
+        usual: &Options,
+    ) -> Result<(), Box<dyn Error>> {
+        self.progress.stage("ordering strokes");
+        let output = self.output;
+        let mut order_seconds = 0.0;
+        let Finished { plot, stats, n_changes } =
+            timed(&mut order_seconds, || output.plotting.finish(plot, &output.target, usual));
+        self.stats.seconds.order += order_seconds;
+        self.stats.plot = Some(stats);
+        let done = Done { stats, n_changes, order_seconds };
+        let profile = match (&output.target.device, output.format) {
+            (Device::Plotter(machine), Format::Hpgl) => {
+                Some(hpgl::Profile::on(&plot, machine.clone(), None)?)
+            }
+            _ => None,
+        };
+        let written = plot.clone();
+        self.write(paper, plot, Some(done), |out| match (output.format, &output.target.device) {
+            (Format::Hpgl, _) => match &profile {
+                Some(profile) => Ok(hpgl::write(&written, profile, out)?),
+                None => Ok(()),
+            },
+            (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(&written, profile, out)?),
+            (Format::Pdf, _) => Ok(pdf::write(&written, out)?),
+            (Format::Dxf, _) => Ok(dxf::write(&written, out)?),
+            (Format::Png, _) => png::write(&written, output.resolution, out),
+            _ => Ok(svg::write(&written, output.svg_element, out)?),
+        })
+    }
+
+    fn write(
+        mut self,
+        paper: &str,
+        plot: Plot,
+        done: Option<Done>,
+        write: impl FnOnce(&mut dyn Write) -> Result<(), PngError>,
+    ) -> Result<(), Box<dyn Error>> {
+        if plot.layers.iter().all(|layer| layer.lines.is_empty()) {
+            self.notes.warnings.push("the drawing is empty: nothing is in view".into());
+        }
+        self.notes.warnings.extend(alike_pens(&plot));
+        if self.output.strict && !self.notes.warnings.is_empty() {
+            drop(self.progress);
+            self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
+            return Err("there are warnings, which --strict takes for errors; \
+                        nothing was written"
+                .into());
+        }
+        self.progress.stage("writing");
+        let mut write_seconds = 0.0;
+        timed(&mut write_seconds, || -> Result<(), Box<dyn Error>> {
+            match &self.output.path {
+                None => Ok(output::write_to_stdout(write)?),
+                Some(path) => output::write_to_file(path, write)
+                    .map_err(|error| format!("cannot write {}: {error}", path.display()).into()),
+            }
+        })?;
+        drop(self.progress);
+        let (output, stats) = (self.output, &mut self.stats);
+        stats.seconds.write += write_seconds;
+        stats.seconds.total = self.start.elapsed().as_secs_f64();
+        stats.peak_bytes = peak_bytes();
+        if !output.quiet {
+            self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
+            messages::plain(&self.notes.summary);
+            let name = output.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
+            messages::plain(format_args!("{name}  {paper}{}", described(&plot, done.as_ref())));
+            if output.verbose {
+                tell_more(output, stats, done.as_ref());
+            }
+        }
+        if output.stats {
+            messages::plain(serde_json::to_string(stats)?);
+        }
+        Ok(())
+    }
+}
+
+/// What joining and ordering did.
+struct Done {
+    stats: PlotStats,
+    n_changes: u64,
+    order_seconds: f64,
+}
+
+/// What each pen draws and how long it all takes.
+fn described(plot: &Plot, done: Option<&Done>) -> String {
+    let mut text: String = plot
+        .layers
+        .iter()
+        .map(|layer| {
+            let meters = layer.lines.length_mm() / 1000.0;
+            format!("  {} {} strokes {meters:.1} m", layer.name, layer.lines.len())
+        })
+        .collect();
+    if let Some(Done { stats: PlotStats { before, after }, .. }) = done {
+        text.push_str(&format!(", {}", brief(after)));
+        if before != after {
+            text.push_str(&format!(
+                "  (before: {} strokes {:.1} m, {})",
+                before.strokes,
+                before.down_m,
+                brief(before)
+            ));
+        }
+    }
+    text
+}
+
+fn brief(work: &PenWork) -> String {
+    let digits = if work.minutes < 10.0 { 1 } else { 0 };
+    format!("pen-up {:.2} m, {} lifts, about {:.digits$} min", work.up_m, work.lifts, work.minutes)
+}
+
+/// What `--verbose` tells.
+fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
+    let seconds = &stats.seconds;
+    if !stats.engine.is_empty() {
+        messages::plain(format_args!(
+            "engine {}, {} threads, {} triangles, {} of {} edges drawn",
+            stats.engine, stats.threads, stats.triangles, stats.drawn_edges, stats.edges
+        ));
+    }
+    messages::plain(format_args!(
+        "read {:.3} s, topology {:.3} s, classify {:.3} s, visibility {:.3} s, strokes {:.3} s, \
+         order {:.3} s, write {:.3} s, total {:.3} s",
+        seconds.read,
+        seconds.topology,
+        seconds.classify,
+        seconds.visibility,
+        seconds.strokes,
+        seconds.order,
+        seconds.write,
+        seconds.total
+    ));
+    if let (Some(done), Some(Effort::Within(limit))) = (done, output.plotting.effort()) {
+        messages::plain(format_args!(
+            "ordering tried {} changes in {:.1} of {:.1} s",
+            done.n_changes,
+            done.order_seconds,
+            limit.as_secs_f64()
+        ));
+    }
+}
+
+/// Pens that programs which go by color would take for one.
+fn alike_pens(plot: &Plot) -> Option<String> {
+    let layers = plot.layers.iter().enumerate();
+    let mut pairs = layers.flat_map(|(i, a)| plot.layers.iter().skip(i + 1).map(move |b| (a, b)));
+    pairs.find(|(a, b)| a.pen.color == b.pen.color && a.pen.width_mm != b.pen.width_mm).map(
+        |(a, b)| {
+            format!(
+                "pens {} and {} have one color; software that goes by color takes them for one pen",
+                a.number, b.number
+            )
+        },
+    )
+}

@@ -1,0 +1,162 @@
+//! What the strokes of a page go through before they are written, for all commands.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use hiddenline::optimize::{Effort, Options, estimate, optimize, split_by_distance};
+use hiddenline::page::{Drawn, PenRule};
+use hiddenline::plot::{Pen, Plot};
+use hiddenline::stats::{PenWork, PlotStats};
+use hiddenline::writers::Format;
+
+use super::machine::{MachineError, Target};
+use super::values::{self, PenText};
+
+/// Colors of pens of which none is said, by number.
+const PALETTE: [&str; 8] =
+    ["#000000", "#808080", "#c00000", "#0000c0", "#008000", "#c06000", "#8000a0", "#0090a0"];
+
+#[derive(Args)]
+#[command(next_help_heading = "Pens and plotter")]
+pub(super) struct PlotArgs {
+    /// How long to search for a short way between the strokes: none, fast, best, or seconds as 10s
+    ///
+    /// Strokes of one pen are joined into the fewest that there can be, ink that lies on other ink
+    /// is drawn once, and then they are ordered. All but seconds give the same result each time.
+    #[arg(long, value_name = "EFFORT", value_parser = values::effort, default_value = "fast")]
+    optimize: Effort,
+    /// Leave out points that are no farther than this from the line; joints are kept
+    #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
+    simplify: f64,
+    /// Ends of strokes this close to each other are one
+    ///
+    /// By default only equal ends are joined in drawings, where joints are known, and those within
+    /// the rounding of the file in an SVG that is read.
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    join_tolerance: Option<f64>,
+    /// Ink this close to other ink of its pen lies on it and is left out
+    ///
+    /// By default 0.0005 in drawings; in an SVG that is read 0, which is exactly collinear ink only.
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    overlap_tolerance: Option<f64>,
+    /// Begin a new layer where a pen has drawn this far, between strokes; 10m is ten meters
+    #[arg(long, value_name = "LENGTH", value_parser = values::distance)]
+    split_distance: Option<f64>,
+    /// What draws: it decides HPGL and G-code, and the estimate of the time
+    ///
+    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan. G-code: grbl-servo (default),
+    /// grbl-z, grbl-laser, marlin. For the estimate also saxi (default), axidraw, grbl.
+    #[arg(long, value_name = "NAME", conflicts_with = "gcode_profile")]
+    machine: Option<String>,
+    /// Templates of a G-code machine of your own, as TOML
+    #[arg(long, value_name = "FILE")]
+    gcode_profile: Option<PathBuf>,
+    /// The pen for visible or hidden lines, or for one kind of them: WHAT=NUMBER[:WIDTH[:COLOR]]
+    ///
+    /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer.
+    #[arg(long = "pen", value_name = "PEN", value_parser = values::pen)]
+    pens: Vec<PenText>,
+}
+
+/// What is to be done with the strokes.
+pub(super) struct Plotting {
+    /// `None` leaves them as they are.
+    effort: Option<Effort>,
+    simplify_mm: f64,
+    join_tolerance_mm: Option<f64>,
+    overlap_mm: Option<f64>,
+    split_distance_mm: Option<f64>,
+    pens: Vec<PenText>,
+}
+
+impl PlotArgs {
+    /// The machine to write for.
+    pub(super) fn target(&self, format: Format) -> Result<Target, MachineError> {
+        Target::new(format, self.machine.as_deref(), self.gcode_profile.as_deref())
+    }
+
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn options(self, exact: bool) -> Result<Plotting, String> {
+        for (i, pen) in self.pens.iter().enumerate() {
+            let earlier = self.pens.iter().take(i).find(|other| other.number == pen.number);
+            if let Some(other) = earlier {
+                let differs = |a: bool, b: bool| a && b;
+                if differs(pen.width_mm.is_some(), pen.width_mm != other.width_mm)
+                    || differs(pen.color.is_some(), pen.color != other.color)
+                {
+                    let number = pen.number;
+                    return Err(format!("pen {number} is given with different widths or colors"));
+                }
+            }
+        }
+        Ok(Plotting {
+            effort: (!exact).then_some(self.optimize),
+            simplify_mm: self.simplify,
+            join_tolerance_mm: self.join_tolerance,
+            overlap_mm: self.overlap_tolerance,
+            split_distance_mm: self.split_distance,
+            pens: self.pens,
+        })
+    }
+}
+
+/// A page ready to be written.
+pub(super) struct Finished {
+    pub(super) plot: Plot,
+    pub(super) stats: PlotStats,
+    /// Random changes to the order that were tried.
+    pub(super) n_changes: u64,
+}
+
+impl Plotting {
+    /// Whether kinds of line have pens of their own.
+    pub(super) fn has_pens_by_kind(&self) -> bool {
+        self.pens.iter().any(|pen| matches!(pen.drawn, Drawn::Kind(_)))
+    }
+
+    /// Whether strokes are joined and ordered.
+    pub(super) fn effort(&self) -> Option<Effort> {
+        self.effort
+    }
+
+    /// The pens; `width_mm` is the width of those that have none of their own.
+    pub(super) fn pens(&self, width_mm: f64) -> Vec<PenRule> {
+        let colors = PALETTE.iter().cycle();
+        let rule = |pen: &PenText| PenRule {
+            drawn: pen.drawn,
+            number: pen.number,
+            pen: Pen {
+                width_mm: pen.width_mm.unwrap_or(width_mm),
+                color: pen.color.clone().unwrap_or_else(|| {
+                    let color = colors.clone().nth((pen.number as usize - 1) % PALETTE.len());
+                    color.copied().unwrap_or("#000000").to_owned()
+                }),
+            },
+        };
+        self.pens.iter().map(rule).collect()
+    }
+
+    /// Joins, simplifies, orders and splits; `usual` is what holds unless it was set otherwise.
+    pub(super) fn finish(&self, plot: Plot, target: &Target, usual: &Options) -> Finished {
+        let work = |plot: &Plot| -> PenWork { estimate::estimate(plot, &target.motion).work() };
+        let before = work(&plot);
+        let (mut plot, n_changes) = match self.effort {
+            None => (plot, 0),
+            Some(effort) => {
+                let options = Options {
+                    join_tolerance_mm: self.join_tolerance_mm.or(usual.join_tolerance_mm),
+                    overlap_mm: self.overlap_mm.unwrap_or(usual.overlap_mm),
+                    simplify_mm: self.simplify_mm,
+                    effort,
+                    ..*usual
+                };
+                optimize(&plot, &options)
+            }
+        };
+        let after = if self.effort.is_some() { work(&plot) } else { before };
+        if let Some(distance_mm) = self.split_distance_mm {
+            plot = split_by_distance(&plot, distance_mm);
+        }
+        Finished { plot, stats: PlotStats { before, after }, n_changes }
+    }
+}

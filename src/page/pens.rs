@@ -1,0 +1,119 @@
+//! Which pen draws what.
+
+use crate::draw::HiddenLines;
+use crate::plot::{Layer, Pen, Polylines};
+use crate::strokes::StrokeKind;
+
+use super::PlotOptions;
+
+/// Strokes that a pen can be given for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawn {
+    /// Visible strokes of all kinds that have no rule of their own.
+    Visible,
+    /// Hidden strokes.
+    Hidden,
+    /// Visible strokes of one kind.
+    Kind(StrokeKind),
+}
+
+impl Drawn {
+    /// The name on the command line and of the layer.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Visible => "visible",
+            Self::Hidden => "hidden",
+            Self::Kind(kind) => kind.name(),
+        }
+    }
+}
+
+/// A pen and what it draws. Rules with the same number are about one pen: the first one says what
+/// it is like and names its layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PenRule {
+    /// What it draws.
+    pub drawn: Drawn,
+    /// Its number, 1 or more.
+    pub number: u32,
+    /// The pen.
+    pub pen: Pen,
+}
+
+/// All pens while they draw.
+pub(super) struct Holder {
+    /// What is drawn by which layer.
+    rules: Vec<(Drawn, usize)>,
+    layers: Vec<Layer>,
+    /// Whether a layer stays when nothing is drawn on it.
+    fixed: Vec<bool>,
+    visible: usize,
+    hidden: usize,
+}
+
+impl Holder {
+    pub(super) fn new(options: &PlotOptions) -> Self {
+        let mut holder = Self {
+            rules: Vec::new(),
+            layers: Vec::new(),
+            fixed: Vec::new(),
+            visible: 0,
+            hidden: 0,
+        };
+        let with_hidden = options.hidden != HiddenLines::None;
+        for rule in options.pens.iter().filter(|r| with_hidden || r.drawn != Drawn::Hidden) {
+            let layer = match holder.layers.iter().position(|l| l.number == rule.number) {
+                Some(layer) => layer,
+                None => holder.add(rule.drawn, rule.number, rule.pen.clone(), true),
+            };
+            holder.rules.push((rule.drawn, layer));
+        }
+        let fixed = options.pens.is_empty();
+        let mut layer_of = |drawn, color: &str, fixed| {
+            let ruled = holder.rules.iter().rev().find(|rule| rule.0 == drawn);
+            ruled.map(|rule| rule.1).unwrap_or_else(|| {
+                let pen = Pen { width_mm: options.pen_width_mm, color: color.to_owned() };
+                let number = holder.free_number();
+                holder.add(drawn, number, pen, fixed)
+            })
+        };
+        let visible = layer_of(Drawn::Visible, "#000000", fixed);
+        let hidden = layer_of(Drawn::Hidden, "#808080", fixed && with_hidden);
+        Self { visible, hidden, ..holder }
+    }
+
+    fn free_number(&self) -> u32 {
+        let mut number = 1;
+        while self.layers.iter().any(|layer| layer.number == number) {
+            number += 1;
+        }
+        number
+    }
+
+    fn add(&mut self, drawn: Drawn, number: u32, pen: Pen, fixed: bool) -> usize {
+        let name = drawn.name().to_owned();
+        self.layers.push(Layer { number, name, pen, lines: Polylines::default() });
+        self.fixed.push(fixed);
+        self.layers.len() - 1
+    }
+
+    /// Where strokes of a kind go, if they go anywhere.
+    pub(super) fn lines(&mut self, kind: StrokeKind, is_hidden: bool) -> &mut Polylines {
+        let layer = if is_hidden {
+            self.hidden
+        } else {
+            let ruled = self.rules.iter().rev().find(|rule| rule.0 == Drawn::Kind(kind));
+            ruled.map_or(self.visible, |rule| rule.1)
+        };
+        &mut self.layers[layer].lines
+    }
+
+    /// The layers by number, without those that nobody asked for and nothing is drawn on.
+    pub(super) fn into_layers(self) -> Vec<Layer> {
+        let kept = self.layers.into_iter().zip(self.fixed);
+        let kept = kept.filter(|(layer, fixed)| *fixed || !layer.lines.is_empty());
+        let mut layers: Vec<Layer> = kept.map(|(layer, _)| layer).collect();
+        layers.sort_by_key(|layer| layer.number);
+        layers
+    }
+}

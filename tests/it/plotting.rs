@@ -1,0 +1,285 @@
+//! The way to paper on the command line: formats, machines, pens, order, and settings from files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use glam::{DVec2, dvec2};
+use hiddenline::optimize::estimate::{Motion, estimate_lines};
+use hiddenline::optimize::{JOIN_TOLERANCE_MM, Options, optimize};
+use hiddenline::plot::Polylines;
+use tempfile::TempDir;
+
+/// A cube of two units around the origin, as OBJ.
+const CUBE: &str = "\
+v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
+f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8
+";
+
+/// Four pieces of ink: two that are one line, one of them again, and one elsewhere.
+const LINES: &str = "\
+<svg xmlns='http://www.w3.org/2000/svg' width='210mm' height='297mm' viewBox='0 0 210 297'>
+<g fill='none' stroke='black'><path d='M50 50L100 50'/><path d='M200 50L100 50'/>
+<path d='M100 50L50 50'/><path d='M20 200L60 240'/></g></svg>";
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::null());
+    command.env("XDG_CONFIG_HOME", folder.join("user"));
+    command
+}
+
+fn hiddenline(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+fn with_models() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_owned();
+    fs::write(path.join("cube.obj"), CUBE).unwrap();
+    fs::write(path.join("lines.svg"), LINES).unwrap();
+    (folder, path)
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn assert_fails(output: &Output, code: i32, message: &str) {
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert!(stderr.contains(message), "{stderr}");
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn every_command_writes_every_format() {
+    let (_keep, folder) = with_models();
+    let commands: [&[&str]; 3] =
+        [&["draw", "cube.obj"], &["surface", "x*y", "--samples", "5"], &["optimize", "lines.svg"]];
+    for command in commands {
+        for (name, start) in [
+            ("a.svg", "<svg"),
+            ("a.plt", "IN;DF;"),
+            ("a.HPGL", "IN;DF;"),
+            ("a.nc", ";"),
+            ("a.pdf", "%PDF"),
+            ("a.dxf", "0\nSECTION"),
+            ("a.png", "\u{fffd}PNG"),
+        ] {
+            let output = hiddenline(&folder, &[command, &["-o", name]].concat());
+            assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+            let bytes = fs::read(folder.join(name)).unwrap();
+            let written = text(&bytes);
+            let starts = written.trim_start().starts_with(start);
+            assert!(starts || name == "a.nc" && written.contains("G1"), "{name}: {written:.40}");
+        }
+    }
+}
+
+#[test]
+fn machines_are_known_by_name_and_near_misses_are_told() {
+    let (_keep, folder) = with_models();
+    let draw = |more: &[&str]| hiddenline(&folder, &[&["draw", "cube.obj"], more].concat());
+    let unknown = draw(&["--machine", "hp7457a", "-o", "a.plt"]);
+    assert_fails(&unknown, 1, "did you mean hp7475a");
+    let other = draw(&["--machine", "grbl", "-o", "a.gcode"]);
+    assert_fails(&other, 1, "did you mean grbl-z or");
+    assert_fails(&draw(&["--machine", "marlin", "-o", "a.plt"]), 1, "not a machine for hpgl");
+    fs::write(folder.join("mine.toml"), "feed = 1\n").unwrap();
+    assert_fails(&draw(&["--gcode-profile", "mine.toml", "-o", "a.nc"]), 1, "mine.toml: ");
+    assert_fails(&draw(&["--page", "123x45", "--margin", "1", "-o", "a.plt"]), 1, "no paper of");
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "nothing was written");
+    assert!(draw(&["--machine", "marlin", "-o", "a.gcode"]).status.success());
+    assert!(text(&fs::read(folder.join("a.gcode")).unwrap()).contains("G1"));
+}
+
+#[test]
+fn optimizing_joins_and_says_what_it_saved() {
+    let (_keep, folder) = with_models();
+    let output = hiddenline(&folder, &["optimize", "lines.svg", "--stats", "-o", "out.svg"]);
+    let stderr = text(&output.stderr);
+    assert!(stderr.contains("2 strokes 0.2 m, pen-up"), "{stderr}");
+    assert!(stderr.contains("(before: 4 strokes 0.3 m, pen-up"), "{stderr}");
+    let stats: serde_json::Value = serde_json::from_str(stderr.lines().last().unwrap()).unwrap();
+    assert_eq!(stats["plot"]["before"]["strokes"], 4);
+    assert_eq!(stats["plot"]["after"]["lifts"], 2);
+    let svg = fs::read_to_string(folder.join("out.svg")).unwrap();
+    assert_eq!(svg.matches("<path").count(), 2);
+    assert!(svg.contains("L200 50\"") || svg.contains("L50 50\""), "{svg}");
+}
+
+#[test]
+fn bad_drawings_are_refused_in_words_and_nothing_is_written() {
+    let (_keep, folder) = with_models();
+    let laughs: String = (1..40)
+        .map(|i| format!("<!ENTITY l{i} '{}'>", format!("&l{};", i - 1).repeat(10)))
+        .collect();
+    let laughs =
+        format!("<!DOCTYPE svg [<!ENTITY l0 'ha'>{laughs}]><svg width='9' height='9'>&l39;</svg>");
+    fs::write(folder.join("old.svg"), "old").unwrap();
+    for (content, message) in [
+        ("<svg", "not a readable SVG"),
+        ("<html/>", "not <svg>"),
+        ("<svg width='9' height='9'><path d='M0 0L9 nan' stroke='red'/></svg>", "line 1"),
+        ("<svg width='0' height='9'/>", "no positive width"),
+        (&laughs, "bad.svg: "),
+    ] {
+        fs::write(folder.join("bad.svg"), content).unwrap();
+        let output = hiddenline(&folder, &["optimize", "bad.svg", "-o", "old.svg"]);
+        assert_fails(&output, 1, message);
+        assert_eq!(fs::read_to_string(folder.join("old.svg")).unwrap(), "old");
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 4);
+}
+
+#[test]
+fn a_kill_at_any_time_leaves_the_old_file_or_the_new_one() {
+    let (_keep, folder) = with_models();
+    let strokes: String =
+        (0..20_000).map(|i| format!("<path d='M{} {}l1 1.5'/>", i % 200, 2 * (i / 200))).collect();
+    let svg = format!("<svg width='9in' height='9in' stroke='red'>{strokes}</svg>");
+    fs::write(folder.join("many.svg"), svg).unwrap();
+    for wait_ms in [20, 80, 160, 320, 640] {
+        fs::write(folder.join("out.svg"), "old").unwrap();
+        let arguments = ["optimize", "many.svg", "-q", "-o", "out.svg"];
+        let mut child = command(&folder, &arguments).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        let _ = child.kill();
+        child.wait().unwrap();
+        let left = fs::read_to_string(folder.join("out.svg")).unwrap();
+        assert!(left == "old" || left.ends_with("</svg>\n"), "after {wait_ms} ms");
+    }
+}
+
+#[test]
+fn each_kind_of_line_can_have_its_pen() {
+    let (_keep, folder) = with_models();
+    let draw = |more: &[&str]| {
+        let output = hiddenline(&folder, &[&["draw", "cube.obj"], more].concat());
+        (text(&output.stdout), text(&output.stderr))
+    };
+    let (svg, _) =
+        draw(&["--hidden", "dashed", "--pen", "visible=1:0.5mm:red", "--pen", "hidden=4"]);
+    assert!(svg.contains(r#"inkscape:label="1 visible""#) && svg.contains("#ff0000"), "{svg:.900}");
+    assert!(svg.contains(r#"inkscape:label="4 hidden""#) && svg.contains(r#"stroke-width="0.5""#));
+    let (svg, stderr) = draw(&["--pen", "crease=2::blue"]);
+    assert!(svg.contains(r#"inkscape:label="2 crease""#), "{svg:.900}");
+    assert!(svg.contains(r#"inkscape:label="1 visible""#), "{svg:.900}");
+    assert!(stderr.contains("crease"), "{stderr}");
+    // Two kinds with one pen are joined as if they were one.
+    let (one, _) = draw(&["--pen", "crease=1", "--pen", "silhouette=1"]);
+    let (plain, _) = draw(&[]);
+    assert_eq!(one.matches("<path").count(), plain.matches("<path").count());
+    let (_, stderr) = draw(&["--pen", "crese=2"]);
+    assert!(stderr.contains("did you mean crease"), "{stderr}");
+}
+
+#[test]
+fn a_pen_that_has_drawn_far_enough_begins_a_new_layer() {
+    let (_keep, folder) = with_models();
+    let arguments = ["optimize", "lines.svg", "--split-distance", "0.1m"];
+    let svg = text(&hiddenline(&folder, &arguments).stdout);
+    assert!(svg.contains("part-1") && svg.contains("part-2"), "{svg}");
+}
+
+#[test]
+fn typed_settings_go_before_the_environment_and_that_before_files() {
+    let (_keep, folder) = with_models();
+    fs::create_dir_all(folder.join("user/hiddenline")).unwrap();
+    fs::write(folder.join("user/hiddenline/config.toml"), "[defaults]\npage = 'a1'\nmargin = 20\n")
+        .unwrap();
+    let page = |arguments: &[&str], variable: Option<&str>| {
+        let mut command =
+            command(&folder, &[&["draw", "cube.obj", "-o", "x.svg"], arguments].concat());
+        if let Some(page) = variable {
+            command.env("HIDDENLINE_PAGE", page);
+        }
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr).split_once("x.svg  ").unwrap().1[..2].to_owned()
+    };
+    assert_eq!(page(&[], None), "A1");
+    let project = "[defaults]\npage = 'a2'\n[preset.small]\npage = 'a6'\nlandscape = true\n";
+    fs::write(folder.join("hiddenline.toml"), project).unwrap();
+    assert_eq!(page(&[], None), "A2");
+    assert_eq!(page(&[], Some("a3")), "A3");
+    assert_eq!(page(&["--preset", "small"], None), "A6");
+    assert_eq!(page(&["--page", "a5", "--preset", "small"], Some("a3")), "A5");
+    // What is typed wins over a setting that conflicts with it.
+    assert_eq!(page(&["--portrait", "--preset", "small"], None), "A6");
+    let shown = text(&hiddenline(&folder, &["config", "show"]).stdout);
+    assert!(shown.contains("page = \"a2\"  # hiddenline.toml"), "{shown}");
+    assert!(shown.contains("margin = \"20"), "{shown}");
+    let output = hiddenline(&folder, &["draw", "cube.obj", "--preset", "smal"]);
+    assert_fails(&output, 1, "did you mean small");
+    fs::write(folder.join("hiddenline.toml"), "[defaults]\npgae = 'a2'\n").unwrap();
+    assert_fails(&hiddenline(&folder, &["draw", "cube.obj"]), 1, "pgae");
+}
+
+#[test]
+fn strict_takes_warnings_for_errors() {
+    let (_keep, folder) = with_models();
+    let away = ["draw", "cube.obj", "--eye", "9,0,0", "--target", "20,0,0", "--strict"];
+    assert_fails(&hiddenline(&folder, &away), 1, "the drawing is empty");
+}
+
+#[test]
+fn colors_come_only_when_asked_for() {
+    let (_keep, folder) = with_models();
+    let colored = hiddenline(&folder, &["draw", "none.obj", "--color", "always"]);
+    assert!(text(&colored.stderr).contains("\u{1b}["));
+    let plain = hiddenline(&folder, &["draw", "none.obj"]);
+    assert!(!text(&plain.stderr).contains("\u{1b}["));
+}
+
+/// The drawing of `gen_strokes.py wire 2000`, where it can be made.
+fn wire_2000() -> Option<Polylines> {
+    let generator =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models/generators/gen_strokes.py");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wire.svg");
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    let made = Command::new(python).arg(generator).args(["wire", "2000"]).arg(&file).output();
+    if !made.is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: gen_strokes.py needs ../shared/models and Python with numpy (PYTHON)");
+        return None;
+    }
+    let text = fs::read_to_string(file).unwrap();
+    let read = hiddenline::line_svg::read(&text, &hiddenline::line_svg::Options::default());
+    Some(read.unwrap().plot.layers.swap_remove(0).lines)
+}
+
+#[test]
+fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
+    let Some(lines) = wire_2000() else { return };
+    let layer = hiddenline::plot::Layer {
+        number: 1,
+        name: "lines".into(),
+        pen: hiddenline::plot::Pen { width_mm: 0.3, color: "#000000".into() },
+        lines,
+    };
+    let plot = hiddenline::plot::Plot { layers: vec![layer], ..Default::default() };
+    let (done, _) = optimize(&plot, &Options::default());
+    let work = estimate_lines(&done.layers[0].lines, &Motion::SAXI);
+    eprintln!("{work:?}");
+    assert_eq!(work.strokes, 134);
+    assert!((work.down_mm - 6696.0).abs() < 1.0, "{}", work.down_mm);
+    assert!(work.up_mm <= 700.0, "{}", work.up_mm);
+}
+
+#[test]
+fn joints_move_by_half_of_the_tolerance_at_most() {
+    // A stroke's end and another's beginning, two micrometers apart as three decimals have them.
+    let lines =
+        [[dvec2(10.0, 10.0), dvec2(20.001, 10.0)], [dvec2(20.003, 10.0), dvec2(20.0, 30.0)]];
+    let mut polylines = Polylines::default();
+    lines.iter().for_each(|line| polylines.push(line.iter().copied()));
+    let joined = hiddenline::optimize::optimize_lines(&polylines, None, &Options::default()).lines;
+    assert_eq!(joined.len(), 1);
+    let corner = joined.iter().next().unwrap()[1];
+    let farthest = |p: DVec2| p.distance(corner);
+    assert!(farthest(lines[0][1]) <= JOIN_TOLERANCE_MM / 2.0);
+    assert!(farthest(lines[1][0]) <= JOIN_TOLERANCE_MM / 2.0);
+}
