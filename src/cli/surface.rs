@@ -82,22 +82,24 @@ pub(super) struct SurfaceArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 struct InputArgs {
-    /// Formulas of x, y, r and theta
-    // One value at a time: otherwise options after a formula would be taken for formulas.
-    #[arg(value_name = "EXPR", allow_hyphen_values = true, num_args = 1)]
+    /// Formula of x, y, r and theta
+    #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     #[arg(required_unless_present_any = ["grid", "points", "parametric"])]
-    expressions: Vec<String>,
+    expression: Option<String>,
+    /// Further formulas, one for each sheet; put one that begins with a minus into parentheses
+    #[arg(value_name = "EXPR")]
+    more: Vec<String>,
     /// Heights from a file; `-` is standard input
     ///
     /// Rows of numbers, ESRI ASCII grid, NPY, or a gray PNG, by the file's content.
-    #[arg(long, value_name = "FILE", conflicts_with = "expressions")]
+    #[arg(long, value_name = "FILE", conflicts_with = "expression")]
     grid: Option<PathBuf>,
     /// Scattered points from a file with x, y and z on each line; `-` is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["expressions", "grid", "x", "y"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["expression", "grid", "x", "y"])]
     points: Option<PathBuf>,
     /// Three formulas of u and v, for x, y and z
     #[arg(long, value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["expressions", "grid", "points", "x", "y"])]
+    #[arg(conflicts_with_all = ["expression", "grid", "points", "x", "y"])]
     parametric: Option<Vec<String>>,
     /// Range of u; its ends may be formulas such as 2*pi [default: 0:1]
     #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
@@ -306,8 +308,9 @@ impl SurfaceArgs {
             let (u, v) = (surface.u.unwrap_or((0.0, 1.0)), surface.v.unwrap_or((0.0, 1.0)));
             Input::Parametric { formulas, u, v, samples }
         } else {
-            let formulas = parse(&surface.expressions, Variables::Plane)?;
-            Input::Formulas { texts: surface.expressions, formulas, samples }
+            let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
+            let formulas = parse(&texts, Variables::Plane)?;
+            Input::Formulas { texts, formulas, samples }
         };
         let named = if lines.lines.is_empty() { vec![default_line] } else { lines.lines };
         let has = |name| named.contains(&name);

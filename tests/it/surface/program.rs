@@ -78,7 +78,7 @@ fn what_max_min_cannot_draw_goes_to_a_mesh_engine() {
     for arguments in [
         &["--grid", "heights"][..],
         &["sqrt(9 - r^2)", "--samples", "21"],
-        &["x", "-y", "--samples", "9"],
+        &["x", "(-y)", "--samples", "9"],
         &["-x^2", "--samples", "9", "--lines", "x,levels"],
         &["x*y", "--samples", "9", "--lines", "silhouette,border"],
         &["--parametric", "u", "v", "u*v", "--samples", "7", "--lines", "mesh"],
@@ -96,7 +96,7 @@ fn a_sheet_hides_the_one_below() {
     let folder = with_file("");
     let view = ["--view", "top", "--samples", "4", "--exact"];
     let (one, _) = drawn(&folder, &[&["0"][..], &view].concat());
-    let (two, _) = drawn(&folder, &[&["0", "-1 - x/100"][..], &view].concat());
+    let (two, _) = drawn(&folder, &[&["0", "(-1 - x/100)"][..], &view].concat());
     assert_eq!(one.len(), 24);
     assert_eq!(two.len(), one.len(), "{two:?}");
 }
