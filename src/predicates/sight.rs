@@ -67,30 +67,6 @@ impl PlaneThrough {
     }
 }
 
-impl PlaneThrough {
-    /// Whether a point with this value may lie within `distance` of the plane; rounded towards yes.
-    #[inline]
-    pub fn may_be_within(&self, value: &Estimate, distance: f64) -> bool {
-        // Three times the largest component is more than the length.
-        let longest = (self.normal.abs() + TRIPLE_PRODUCT_ERROR * self.spread).max_element() * 3.0;
-        !(value.value.abs() - value.error > distance * longest)
-    }
-
-    /// How far along a sight line a point within `distance` of the plane may be from it, at most;
-    /// `sight` are the sight lines through three points of the plane that are around it.
-    pub fn reach(&self, distance: f64, sight: [DVec3; 3]) -> f64 {
-        let longest = (self.normal.abs() + TRIPLE_PRODUCT_ERROR * self.spread).max_element() * 3.0;
-        // The height over the plane is the same along all of them when they start at one eye.
-        let height = sight
-            .iter()
-            .map(|d| self.normal.dot(*d).abs() - TRIPLE_PRODUCT_ERROR * self.spread.dot(d.abs()))
-            .fold(f64::INFINITY, f64::min);
-        let farthest = sight.iter().map(|d| d.abs().element_sum()).fold(0.0, f64::max);
-        let reach = distance * longest * farthest / height;
-        if height > 0.0 && reach.is_finite() { reach } else { f64::INFINITY }
-    }
-}
-
 impl<'a> Sight<'a> {
     /// The points of `positions`, all finite, as `camera` sees them. O(points).
     pub fn new(positions: &'a [DVec3], camera: &Camera) -> Self {
@@ -163,7 +139,7 @@ impl<'a> Sight<'a> {
 
     /// The direction of sight through a vertex, away from the observer.
     #[inline]
-    pub fn sight_line(&self, vertex: u32) -> DVec3 {
+    fn sight_line(&self, vertex: u32) -> DVec3 {
         match self.viewpoint {
             Viewpoint::Eye(eye) => self.position(vertex) - eye,
             Viewpoint::Direction(forward) => forward,
@@ -311,6 +287,31 @@ impl<'a> Sight<'a> {
                 )
             }
         })
+    }
+
+    /// Whether a point with this value may lie within `distance` of a plane; in doubt, yes.
+    #[inline]
+    pub fn may_be_within(&self, plane: &PlaneThrough, value: &Estimate, distance: f64) -> bool {
+        // Three times the largest component is more than the length.
+        let longest = plane.normal.abs() + TRIPLE_PRODUCT_ERROR * plane.spread;
+        let beyond = value.value.abs() - value.error - distance * 3.0 * longest.max_element();
+        !self.in_window || beyond <= 0.0 || beyond.is_nan()
+    }
+
+    /// How far behind a triangle, along a sight line through it, a point within `distance` of its
+    /// plane may be, at most; infinite when nothing is certain.
+    pub fn contact_reach(&self, triangle: [u32; 3], distance: f64) -> f64 {
+        let plane = self.triangle_plane(triangle);
+        let sight = triangle.map(|corner| self.sight_line(corner));
+        let longest = plane.normal.abs() + TRIPLE_PRODUCT_ERROR * plane.spread;
+        // The eye's height over the plane, from any corner.
+        let height = sight
+            .iter()
+            .map(|d| plane.normal.dot(*d).abs() - TRIPLE_PRODUCT_ERROR * plane.spread.dot(d.abs()))
+            .fold(f64::INFINITY, f64::min);
+        let farthest = sight.iter().map(|d| d.abs().element_sum()).fold(0.0, f64::max);
+        let reach = distance * 3.0 * longest.max_element() * farthest / height;
+        if self.in_window && height > 0.0 && reach.is_finite() { reach } else { f64::INFINITY }
     }
 
     pub(super) fn exact_turns(&self, p: u32, q: u32, x: [u32; 2]) -> [IBig; 2] {

@@ -129,6 +129,9 @@ pub(crate) fn random(seed: u64) -> Scene {
             _ => add_doubtful_faces(&mut rng, &mut model, &boxes),
         }
     }
+    if model.faces.is_empty() {
+        add_tetrahedron(&mut rng, &mut model); // all that there was has been removed
+    }
     let sight = random_sight(&mut rng, &model);
     if rng.one_in(4) {
         rng.shuffle(&mut model.faces);

@@ -3,7 +3,8 @@
 //! A. Appel, "The notion of quantitative invisibility and the machine rendering of solids", ACM
 //! National Conference 1967. The quantitative invisibility of a point is the number of triangles
 //! that cover it. Along a drawn edge it changes only where the edge passes behind a nearer
-//! [cutting edge](cutting) or pierces a triangle:
+//! *cutting edge* (a side of triangles of which more lie on the one side of its image than on the
+//! other) or pierces a triangle:
 //!
 //! ```text
 //!    qi 0    ┆   qi 2  ┆   qi 1  ┆   qi 0
@@ -22,7 +23,7 @@
 //!
 //! Differs from the paper in:
 //! * all triangles count, front and back, so that meshes may be open, non-manifold or badly wound;
-//! * each of an edge's two sides has its own number (see [`trace`]), and a side is a path that meets
+//! * each of an edge's two sides has its own number (module `trace`), and a side is a path that meets
 //!   no vertex and runs along no edge, so that coincidences in the image are no special case;
 //! * nothing is rounded: crossing, depth and order are signs of [`crate::predicates`], and the two
 //!   ways by which a number can reach a vertex must give the same. A difference would be a fault of
@@ -31,6 +32,17 @@
 //! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
 //! [`Settings::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
 //! tolerance says does not cover is taken away from the edge at last.
+//!
+//! # How the work grows
+//!
+//! All edges of a displaced sphere, which is open at the poles, in perspective. Cutting edges tested
+//! grow like the contours; triangles tested are those near in space, two or three for each edge.
+//!
+//! | triangles | edges | cutting edges tested | triangles tested | sight lines | Roberts' triangles |
+//! |---|---|---|---|---|---|
+//! | 9,800 | 14,800 | 28,380 | 49,640 | 1 | 179,660 |
+//! | 101,760 | 152,960 | 112,879 | 390,133 | 1 | 2,095,403 |
+//! | 998,000 | 1,498,000 | 390,797 | 3,256,688 | 1 | 20,863,293 |
 
 mod cutting;
 mod doubled;
@@ -142,8 +154,7 @@ fn place_in_space(
     match rounding.place(view, triangle) {
         Place::Within(bounds) if contact_tolerance > 0.0 => {
             let corners = view.scene().triangles()[triangle as usize];
-            let sight = corners.map(|corner| view.sight().sight_line(corner));
-            let reach = view.sight().triangle_plane(corners).reach(contact_tolerance, sight);
+            let reach = view.sight().contact_reach(corners, contact_tolerance);
             Place::Within(bounds.reaching(bounds.farthest() + reach))
         }
         place => place,

@@ -63,7 +63,7 @@ impl Bounds {
 
     /// The same box with all depths up to its farthest.
     #[must_use]
-    pub(super) fn from_eye(self) -> Self {
+    pub(super) fn with_all_nearer(self) -> Self {
         Self { nearest: f64::NEG_INFINITY, ..self }
     }
 
@@ -126,7 +126,7 @@ impl Sorting {
         let thickness = |e: &Entry| f64::from(e.farthest) - f64::from(e.nearest);
         let finite = || entries.iter().map(thickness).filter(|t| t.is_finite());
         let average = finite().sum::<f64>() / finite().count().max(1) as f64;
-        let is_deep = |e: &Entry| !(thickness(e) <= DEEP * average);
+        let is_deep = |e: &Entry| thickness(e) > DEEP * average;
         entries.sort_unstable_by(|a, b| {
             let by_depth = a.nearest.total_cmp(&b.nearest).then(a.item.cmp(&b.item));
             is_deep(b).cmp(&is_deep(a)).then(by_depth)

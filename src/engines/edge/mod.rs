@@ -39,7 +39,7 @@ pub struct Settings {
 /// The line engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Engine {
-    /// The fastest that can draw the scene.
+    /// Appel when at least half as many edges are drawn as there are triangles, else Roberts.
     #[default]
     Auto,
     /// Every edge against the triangles near its image.
@@ -58,12 +58,23 @@ pub fn solve(
     engine: Engine,
     settings: &Settings,
 ) -> (Visibility, Counts, &'static str) {
+    let engine = if engine == Engine::Auto { fastest(view) } else { engine };
     let (name, (visibility, counts)) = match engine {
-        Engine::Auto | Engine::Roberts => ("roberts", roberts::solve(view, settings)),
-        Engine::Appel => ("appel", appel::solve(view, settings)),
+        Engine::Roberts => ("roberts", roberts::solve(view, settings)),
+        Engine::Auto | Engine::Appel => ("appel", appel::solve(view, settings)),
         Engine::AllPairs => ("all-pairs", roberts::solve_all_pairs(view, settings)),
     };
     (visibility, counts, name)
+}
+
+/// The engine that [`Engine::Auto`] stands for.
+///
+/// Appel where at least half as many edges are drawn as there are triangles: then most edges meet
+/// others whose counts they can take over. With fewer, the index of the triangles is most of the
+/// work of either engine, and Roberts leaves out of it what lies behind large triangles.
+fn fastest(view: &ViewedScene) -> Engine {
+    let many = 2 * view.drawn().len() >= view.scene().triangles().len();
+    if many { Engine::Appel } else { Engine::Roberts }
 }
 
 /// How much work an engine did.

@@ -216,7 +216,7 @@ fn pairs_by_place(
     let index = ImageIndex::of_items(view, wanted, segments.len(), None, |i| {
         segments[i as usize].as_ref().map_or(Place::Nowhere, |segment| {
             let bounds = rounding.bounds(segment.image, segment.depth);
-            Place::Within(bounds.from_eye().reaching(f64::INFINITY))
+            Place::Within(bounds.with_all_nearer().reaching(f64::INFINITY))
         })
     });
     let mut visitor = Visitor::new(Some(&index));

@@ -114,7 +114,7 @@ pub(super) fn layers_beyond(
 ) -> [i32; 2] {
     let point =
         Segment { image: [segment.image[end]; 2], depth: [segment.depth[end]; 2], ..*segment };
-    let bounds = index.bounds_of(&point).from_eye();
+    let bounds = index.bounds_of(&point).with_all_nearer();
     let corners = |triangle: u32| view.scene().triangles()[triangle as usize];
     let mut layers = [0; 2];
     visitor.any_within(index, view, &point, &bounds, corners, |triangle| {

@@ -214,7 +214,7 @@ fn meeting(
     let depths = segment.ends.map(|end| sight.depth_at(&plane, corners, end));
     let tolerance = around.contact_tolerance;
     if tolerance > 0.0
-        && depths.iter().all(|(depth, _)| plane.may_be_within(depth, tolerance))
+        && depths.iter().all(|(depth, _)| sight.may_be_within(&plane, depth, tolerance))
         && sight.in_contact(corners, segment.ends, tolerance)
         && let Some(Shadow::Covers(cover)) = shadow(view, segment, triangle, 0.0, false)
     {
