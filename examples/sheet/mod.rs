@@ -19,6 +19,7 @@ use hiddenline::writers::svg::{self, StrokeElement};
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// A mesh, from where it is seen, how it is drawn, and on what paper.
+#[allow(dead_code, reason = "surfaces are drawn without a mesh")]
 pub(crate) struct Sheet {
     pub(crate) title: &'static str,
     pub(crate) mesh: Mesh,
@@ -27,6 +28,7 @@ pub(crate) struct Sheet {
     pub(crate) page: PageOptions,
 }
 
+#[allow(dead_code, reason = "surfaces are drawn without a mesh")]
 impl Sheet {
     /// The finished page.
     pub(crate) fn plot(self) -> Result<Plot> {

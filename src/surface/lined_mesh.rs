@@ -80,7 +80,7 @@ impl LinedMesh {
             }
         }
         let every = lines.every.max(1);
-        let chosen = |k: usize, n: usize| k % every == 0 || k + 1 == n;
+        let chosen = |k: usize, n: usize| k.is_multiple_of(every) || k + 1 == n;
         let mut push = |a: usize, b: usize| {
             if !is_hole(a) && !is_hole(b) {
                 self.lines.push(SurfaceLine { ends: [id(a), id(b)], kind: StrokeKind::Grid });

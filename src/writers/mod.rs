@@ -66,7 +66,7 @@ impl Format {
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
         let is_known = |known: &&str| extension.eq_ignore_ascii_case(known);
-        Self::ALL.into_iter().find(|format| format.extensions().iter().any(|e| is_known(&e)))
+        Self::ALL.into_iter().find(|format| format.extensions().iter().any(&is_known))
     }
 
     /// Whether the format is bytes rather than text.

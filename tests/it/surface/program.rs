@@ -24,7 +24,7 @@ fn with_file(content: impl AsRef<[u8]>) -> TempDir {
 
 /// The strokes of a drawing, and which engine drew it.
 fn drawn(folder: &TempDir, arguments: &[&str]) -> (Vec<Value>, String) {
-    let axes = if arguments.iter().any(|a| *a == "--title") { &[][..] } else { &["--no-axes"] };
+    let axes = if arguments.contains(&"--title") { &[][..] } else { &["--no-axes"] };
     let output = run(folder, &[arguments, axes, &["--format", "json", "--stats"]].concat());
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {stderr}");
