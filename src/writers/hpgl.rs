@@ -63,7 +63,7 @@ pub struct Paper {
     pub park: [i32; 2],
 }
 
-/// A plotter with a paper in it: what [`write`] draws on.
+/// A plotter with a paper in it: what [`write()`] draws on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// The plotter.
