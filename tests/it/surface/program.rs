@@ -67,7 +67,7 @@ fn roberts_by_choice_draws_what_max_min_draws() {
     let length =
         |list: &[[f64; 4]]| -> f64 { list.iter().map(|s| (s[2] - s[0]).hypot(s[3] - s[1])).sum() };
     let (by_grid, by_mesh) = (segments(&by_grid), segments(&by_mesh));
-    assert!(by_mesh.len() > 100, "{}", by_mesh.len());
+    assert!(by_mesh.len() > 350, "{}", by_mesh.len());
     assert!((length(&by_grid) - length(&by_mesh)).abs() < 1e-9 * length(&by_mesh));
     assert!(by_grid.len() >= by_mesh.len());
 }
