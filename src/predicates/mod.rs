@@ -42,7 +42,7 @@ pub mod exact;
 mod sight;
 
 pub use cut::{Cut, CutPlane};
-pub use sight::{PlaneThrough, Sight, Viewpoint};
+pub use sight::{PlaneThrough, Sight, Slab, Viewpoint};
 
 use glam::{DVec2, DVec3};
 

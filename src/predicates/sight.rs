@@ -42,6 +42,13 @@ pub struct PlaneThrough {
     base: DVec3,
 }
 
+/// The points near a plane; see [`Sight::slab`].
+#[derive(Debug, Clone, Copy)]
+pub struct Slab {
+    plane: PlaneThrough,
+    limit: f64,
+}
+
 impl PlaneThrough {
     #[inline]
     fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
@@ -55,6 +62,13 @@ impl PlaneThrough {
             ),
             base,
         }
+    }
+
+    /// More than the length of the true normal.
+    #[inline]
+    fn longest_normal(&self) -> f64 {
+        let longest = self.normal.abs() + TRIPLE_PRODUCT_ERROR * self.spread;
+        3.0 * longest.max_element()
     }
 
     #[inline]
@@ -292,25 +306,37 @@ impl<'a> Sight<'a> {
     /// Whether a point with this value may lie within `distance` of a plane; in doubt, yes.
     #[inline]
     pub fn may_be_within(&self, plane: &PlaneThrough, value: &Estimate, distance: f64) -> bool {
-        // Three times the largest component is more than the length.
-        let longest = plane.normal.abs() + TRIPLE_PRODUCT_ERROR * plane.spread;
-        let beyond = value.value.abs() - value.error - distance * 3.0 * longest.max_element();
+        let beyond = value.value.abs() - value.error - distance * plane.longest_normal();
         !self.in_window || beyond <= 0.0 || beyond.is_nan()
     }
 
-    /// How far behind a triangle, along a sight line through it, a point within `distance` of its
-    /// plane may be, at most; infinite when nothing is certain.
-    pub fn contact_reach(&self, triangle: [u32; 3], distance: f64) -> f64 {
+    /// On which side of a triangle's plane a vertex lies, when it is certainly further than the
+    /// distance that went into `slab` from it; `None` in doubt.
+    #[inline]
+    pub fn side_of_slab(&self, slab: &Slab, vertex: u32) -> Option<Sign> {
+        let Estimate { value, error } = slab.plane.negated_at(self.position(vertex));
+        let beyond = value.abs() - error - slab.limit;
+        (self.in_window && beyond > 0.0).then(|| Sign::of(value))
+    }
+
+    /// All points within `distance` of the plane of a triangle, and a few more.
+    #[inline]
+    pub fn slab(&self, triangle: [u32; 3], distance: f64) -> Slab {
         let plane = self.triangle_plane(triangle);
-        let sight = triangle.map(|corner| self.sight_line(corner));
-        let longest = plane.normal.abs() + TRIPLE_PRODUCT_ERROR * plane.spread;
-        // The eye's height over the plane, from any corner.
-        let height = sight
-            .iter()
-            .map(|d| plane.normal.dot(*d).abs() - TRIPLE_PRODUCT_ERROR * plane.spread.dot(d.abs()))
-            .fold(f64::INFINITY, f64::min);
-        let farthest = sight.iter().map(|d| d.abs().element_sum()).fold(0.0, f64::max);
-        let reach = distance * 3.0 * longest.max_element() * farthest / height;
+        Slab { plane, limit: distance * plane.longest_normal() }
+    }
+
+    /// How far behind a triangle a point within `distance` of its plane may be, at most, in lengths
+    /// of the sight line through it: of the eye's distance in perspective, of the direction of view
+    /// in orthographic projection. Infinite when nothing is certain.
+    pub fn contact_reach(&self, triangle: [u32; 3], distance: f64) -> f64 {
+        // A sight line comes nearer to the plane by the eye's height over it.
+        let plane = self.triangle_plane(triangle);
+        let sight = self.sight_line(triangle[0]);
+        let height =
+            plane.normal.dot(sight).abs() - TRIPLE_PRODUCT_ERROR * plane.spread.dot(sight.abs());
+        // Twice as far covers all roundings.
+        let reach = 2.0 * distance * plane.longest_normal() / height;
         if self.in_window && height > 0.0 && reach.is_finite() { reach } else { f64::INFINITY }
     }
 

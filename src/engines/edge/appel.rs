@@ -44,8 +44,10 @@
 //! | 101,760 | 152,960 | 112,879 | 390,133 | 1 | 2,095,403 |
 //! | 998,000 | 1,498,000 | 390,797 | 3,256,688 | 1 | 20,863,293 |
 
+mod box_join;
 mod cutting;
 mod doubled;
+mod near;
 mod propagate;
 mod start;
 mod trace;
@@ -61,6 +63,7 @@ use crate::predicates::CutPlane;
 use crate::visibility::Visibility;
 use cutting::{Sides, Stars};
 use doubled::Partners;
+use near::NearTriangles;
 use propagate::{Base, Levels};
 use rayon::prelude::*;
 use start::{is_plain, layers_beyond, local_layers};
@@ -78,22 +81,20 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     let segments = roberts::segments(view);
     let sides = Sides::new(view);
     let (cutting, is_even) = sides.cutting_edges(view);
-    let n_triangles = view.scene().triangles().len();
     let rounding = Rounding::new(view);
     let drawn = segments.iter().flatten();
-    let cutting_index = ImageIndex::of_items(view, drawn.clone(), cutting.len(), None, |edge| {
+    let cutting_index = ImageIndex::of_items(view, drawn, cutting.len(), None, |edge| {
         let points = cutting[edge as usize].ends.map(|end| view.image()[end as usize]);
         let bounds = rounding.bounds(points.map(|p| p.image()), points.map(|p| p.depth));
         Place::Within(bounds.reaching(f64::INFINITY))
     });
-    let triangle_index = ImageIndex::of_items(view, drawn, n_triangles, None, |triangle| {
-        place_in_space(view, &rounding, triangle, settings.contact_tolerance)
-    })
-    .sorted_by_depth();
+    let near = NearTriangles::new(view, &rounding, &segments, settings.contact_tolerance);
+    let cut_by_near_plane = triangles_that_the_near_plane_cuts(view, &rounding);
     let around = Surroundings {
         cutting: &cutting,
         cutting_index: &cutting_index,
-        triangle_index: &triangle_index,
+        near: &near,
+        cut_by_near_plane: &cut_by_near_plane,
         contact_tolerance: settings.contact_tolerance,
     };
     let tracers = Tracers::new(&around);
@@ -109,13 +110,15 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     let neighbors = Neighbors { sides: &sides, stars: &stars, is_plain };
     let traced: Vec<Chunk> = segments
         .par_chunks(CHUNK)
-        .map(|segments| {
-            tracers.with(|tracer| Chunk::trace(view, &around, &neighbors, segments, tracer))
+        .enumerate()
+        .map(|(i, chunk)| {
+            let first = i * CHUNK;
+            tracers.with(|tracer| Chunk::trace(view, &around, &neighbors, first, chunk, tracer))
         })
         .collect();
 
     let mut starts = Starts::new(view, &segments, &traced);
-    starts.ask_sight_lines(view, &around, &tracers, &segments, &traced);
+    starts.ask_sight_lines(view, &rounding, &segments, &traced);
     let partners =
         if settings.find_doubled { Partners::new(view, &segments) } else { Partners::default() };
     let drawing = Drawing { view, settings, sides: &sides, partners: &partners, starts: &starts };
@@ -144,21 +147,14 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     (visibility, counts)
 }
 
-/// The box of a triangle with all points behind it that are in near contact with its plane.
-fn place_in_space(
-    view: &ViewedScene,
-    rounding: &Rounding,
-    triangle: u32,
-    contact_tolerance: f64,
-) -> Place {
-    match rounding.place(view, triangle) {
-        Place::Within(bounds) if contact_tolerance > 0.0 => {
-            let corners = view.scene().triangles()[triangle as usize];
-            let reach = view.sight().contact_reach(corners, contact_tolerance);
-            Place::Within(bounds.reaching(bounds.farthest() + reach))
-        }
-        place => place,
+fn triangles_that_the_near_plane_cuts(view: &ViewedScene, rounding: &Rounding) -> Vec<u32> {
+    if !view.near_plane_cuts() {
+        return Vec::new();
     }
+    (0..view.scene().triangles().len() as u32)
+        .into_par_iter()
+        .filter(|&triangle| matches!(rounding.place(view, triangle), Place::Everywhere))
+        .collect()
 }
 
 /// Work spaces of the threads.
@@ -225,13 +221,14 @@ impl Chunk {
         view: &ViewedScene,
         around: &Surroundings,
         neighbors: &Neighbors,
+        first: usize,
         segments: &[Option<Segment>],
         tracer: &mut Tracer,
     ) -> Self {
         let mut chunk = Self { trace: Trace::default(), ends: Vec::new(), links: Vec::new() };
-        for segment in segments {
+        for (i, segment) in segments.iter().enumerate() {
             let link = segment.as_ref().map_or_else(Link::default, |segment| Link {
-                total: tracer.trace(view, around, segment, &mut chunk.trace),
+                total: tracer.trace(view, around, first + i, segment, &mut chunk.trace),
                 local: neighbors.local_layers(view, segment),
             });
             chunk.links.push(link);
@@ -303,8 +300,7 @@ impl Starts {
     fn ask_sight_lines(
         &mut self,
         view: &ViewedScene,
-        around: &Surroundings,
-        tracers: &Tracers,
+        rounding: &Rounding,
         segments: &[Option<Segment>],
         traced: &[Chunk],
     ) {
@@ -329,17 +325,8 @@ impl Starts {
                 }
             }
         }
-        let answers: Vec<[i32; 2]> = questions
-            .par_iter()
-            .map(|&(i, end, _)| {
-                segments[i as usize].as_ref().map_or([0; 2], |segment| {
-                    tracers.with(|tracer| {
-                        let visitor = &mut tracer.triangle_visitor;
-                        layers_beyond(view, around.triangle_index, visitor, segment, end)
-                    })
-                })
-            })
-            .collect();
+        let ends = questions.iter().map(|&(i, end, _)| (segments[i as usize].as_ref(), end));
+        let answers = layers_beyond(view, rounding, ends);
         self.n_sight_lines = questions.len() as u64;
         for (&(i, end, vertex), layers) in questions.iter().zip(answers) {
             let i = i as usize;

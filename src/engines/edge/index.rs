@@ -21,7 +21,7 @@ use super::Settings;
 use super::segment::Segment;
 use crate::classify::{ImagePoint, ViewedScene};
 use crate::predicates::Sign;
-use glam::{DVec2, dvec2};
+use glam::{DVec2, DVec3, dvec2};
 use rayon::prelude::*;
 
 /// Image coordinates are within this, times the square of their distance from the center plus one,
@@ -67,9 +67,9 @@ impl Bounds {
         Self { nearest: f64::NEG_INFINITY, ..self }
     }
 
-    /// The largest depth.
-    pub(super) fn farthest(&self) -> f64 {
-        self.farthest
+    /// The lowest and the highest corner, with depths as third coordinates.
+    pub(super) fn corners(&self) -> [DVec3; 2] {
+        [self.low.extend(self.nearest), self.high.extend(self.farthest)]
     }
 
     /// Whether the boxes share a point of the image.
@@ -118,22 +118,6 @@ impl Entry {
             || self.high[1] < segment.low[1]
             || self.nearest > segment.farthest
             || self.farthest < segment.nearest
-    }
-}
-
-impl Sorting {
-    fn sort(entries: &mut [Entry]) -> Self {
-        let thickness = |e: &Entry| f64::from(e.farthest) - f64::from(e.nearest);
-        let finite = || entries.iter().map(thickness).filter(|t| t.is_finite());
-        let average = finite().sum::<f64>() / finite().count().max(1) as f64;
-        let is_deep = |e: &Entry| thickness(e) > DEEP * average;
-        entries.sort_unstable_by(|a, b| {
-            let by_depth = a.nearest.total_cmp(&b.nearest).then(a.item.cmp(&b.item));
-            is_deep(b).cmp(&is_deep(a)).then(by_depth)
-        });
-        let n_deep = entries.partition_point(is_deep);
-        let thickest = entries[n_deep..].iter().map(thickness).fold(0.0, f64::max);
-        Self { n_deep: n_deep as u32, thickness: thickest.next_up() }
     }
 }
 
@@ -248,21 +232,7 @@ pub(super) struct ImageIndex {
     /// Items to be offered to every segment: triangles that the near plane cuts.
     everywhere: Vec<u32>,
     n_items: usize,
-    /// For each cell how its entries are sorted; empty when they are not.
-    sorting: Vec<Sorting>,
 }
-
-/// The order of a cell's entries by depth.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sorting {
-    /// How many entries that reach unusually far come first, in no order.
-    n_deep: u32,
-    /// The farthest that any of the others reaches behind its nearest point.
-    thickness: f64,
-}
-
-/// An entry that reaches this many times further than the average of its cell is a deep one.
-const DEEP: f64 = 4.0;
 
 impl ImageIndex {
     /// An index of the triangles that may cover some of `segments`.
@@ -309,7 +279,6 @@ impl ImageIndex {
             covered_from: Vec::new(),
             everywhere: Vec::new(),
             n_items,
-            sorting: Vec::new(),
         };
         if n_segments == 0 {
             return index;
@@ -324,41 +293,6 @@ impl ImageIndex {
         index
     }
 
-    /// Sorts the items of each cell by depth, so that segments skip those well in front of them.
-    ///
-    /// ```text
-    ///   nearest    ├──┤ ├────┤  ├──┤ ├─────┤  ├──┤  farthest
-    ///                          ├──┤ segment
-    ///                  └────────┘ thickness: what begins before this ends before the segment
-    /// ```
-    #[must_use]
-    pub(super) fn sorted_by_depth(mut self) -> Self {
-        let mut cells: Vec<&mut [Entry]> = Vec::with_capacity(self.starts.len());
-        let mut rest = &mut self.entries[..];
-        for pair in self.starts.windows(2) {
-            let (cell, others) = rest.split_at_mut((pair[1] - pair[0]) as usize);
-            cells.push(cell);
-            rest = others;
-        }
-        self.sorting = cells.into_par_iter().with_min_len(1024).map(Sorting::sort).collect();
-        self
-    }
-
-    /// The entries of a cell that may be within a range of depths, in two runs.
-    #[inline]
-    fn entries_near(&self, cell: usize, own: &Entry) -> [&[Entry]; 2] {
-        let all = &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize];
-        let Some(sorting) = self.sorting.get(cell).filter(|_| !all.is_empty()) else {
-            return [all, &[]];
-        };
-        let (deep, others) = all.split_at(sorting.n_deep as usize);
-        let begins_before = |e: &Entry| e.nearest <= own.farthest;
-        let ends_before =
-            |e: &Entry| f64::from(e.nearest) + sorting.thickness < f64::from(own.nearest);
-        let others = &others[..others.partition_point(begins_before)];
-        [deep, &others[others.partition_point(ends_before)..]]
-    }
-
     /// The box of a segment's image.
     pub(super) fn bounds_of(&self, segment: &Segment) -> Bounds {
         self.rounding.bounds(segment.image, segment.depth)
@@ -367,11 +301,6 @@ impl ImageIndex {
     /// The box of the images of some points in front of the eye.
     pub(super) fn bounds<const N: usize>(&self, points: [ImagePoint; N]) -> Bounds {
         self.rounding.bounds(points.map(ImagePoint::image), points.map(|p| p.depth))
-    }
-
-    /// The items that were placed everywhere.
-    pub(super) fn everywhere(&self) -> &[u32] {
-        &self.everywhere
     }
 
     /// Whether every cell along the segment is covered in front of all of it.
@@ -816,7 +745,8 @@ impl Visitor {
         index.levels.iter().rev().filter(|level| level.used).any(|level| {
             index.any_cell(level, segment, bounds, |cell| {
                 let cell = cell as usize;
-                index.entries_near(cell, &own).into_iter().flatten().any(|entry| {
+                let (start, end) = (index.starts[cell], index.starts[cell + 1]);
+                index.entries[start as usize..end as usize].iter().any(|entry| {
                     if entry.is_apart(&own) {
                         return false;
                     }

@@ -1,9 +1,11 @@
 //! How many layers lie over a segment where it leaves one of its ends.
 
-use super::super::index::{ImageIndex, Visitor};
+use super::super::index::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Sides, side_of};
-use super::cutting::Stars;
+use super::box_join::{Lattice, LatticeBox, Place, box_of_all, meeting_pairs};
+use super::cutting::{Stars, is_counted};
+use super::near::places_of_vertices;
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;
 
@@ -104,23 +106,49 @@ pub(super) fn local_layers(
     layers
 }
 
-/// How many triangles of the index cover the segment just beyond one of its ends, by one sight line.
-pub(super) fn layers_beyond(
+/// How many triangles cover each of some segments just beyond one of its ends, by sight lines.
+///
+/// O(triangles), and the triangles whose image's box holds an end's image.
+pub(super) fn layers_beyond<'s>(
     view: &ViewedScene,
-    index: &ImageIndex,
-    visitor: &mut Visitor,
-    segment: &Segment,
-    end: usize,
-) -> [i32; 2] {
-    let point =
-        Segment { image: [segment.image[end]; 2], depth: [segment.depth[end]; 2], ..*segment };
-    let bounds = index.bounds_of(&point).with_all_nearer();
-    let corners = |triangle: u32| view.scene().triangles()[triangle as usize];
-    let mut layers = [0; 2];
-    visitor.any_within(index, view, &point, &bounds, corners, |triangle| {
-        add(&mut layers, covers_beyond(view, segment.ends, end, triangle));
-        false
+    rounding: &Rounding,
+    ends: impl Iterator<Item = (Option<&'s Segment>, usize)>,
+) -> Vec<[i32; 2]> {
+    let questions: Vec<(Option<&Segment>, usize)> = ends.collect();
+    let mut layers = vec![[0; 2]; questions.len()];
+    let ends = || (0..).zip(&questions).filter_map(|(i, &(segment, end))| Some((i, segment?, end)));
+    let bounds = |segment: &Segment, end: usize| {
+        rounding.bounds([segment.image[end]], [segment.depth[end]]).corners()
+    };
+    let all = box_of_all(ends().map(|(_, segment, end)| bounds(segment, end)));
+    let Some(lattice) = Lattice::over(all.map(|corner| corner.with_z(0.0)), 1.0) else {
+        return layers;
+    };
+    let vertices = places_of_vertices(view, rounding, &lattice);
+    // Whether a triangle is in front is asked of it, so that depths are of no use here.
+    let flat = |place: Place, number: u32| {
+        Place { low: [place.low[0], place.low[1], 1], high: [place.high[0], place.high[1], 1] }
+            .of(number)
+    };
+    let first: Vec<LatticeBox> = ends()
+        .filter_map(|(i, segment, end)| flat(lattice.place(bounds(segment, end)), i))
+        .collect();
+    let second = |triangle| {
+        let corners = view.scene().triangles()[triangle as usize];
+        let place = Place::around(corners.map(|corner| &vertices[corner as usize]));
+        is_counted(view, triangle).then(|| flat(place, triangle))?
+    };
+    let n_triangles = view.scene().triangles().len();
+    let found = meeting_pairs(&first, n_triangles, second, |triangle, meeting, found| {
+        for &i in meeting {
+            if let (Some(segment), end) = questions[i as usize] {
+                found.push((i, covers_beyond(view, segment.ends, end, triangle)));
+            }
+        }
     });
+    for (i, more) in found {
+        add(&mut layers[i as usize], more);
+    }
     layers
 }
 

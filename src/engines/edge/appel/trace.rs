@@ -19,6 +19,7 @@ use super::super::index::{Bounds, ImageIndex, Visitor};
 use super::super::segment::Segment;
 use super::super::shadow::{Shadow, Sides, shadow, side_of};
 use super::cutting::CuttingEdge;
+use super::near::NearTriangles;
 use super::start::add;
 use crate::classify::ViewedScene;
 use crate::predicates::{Cut, CutPlane, Estimate, Sign};
@@ -40,8 +41,10 @@ pub(super) struct Surroundings<'s> {
     pub cutting: &'s [CuttingEdge],
     /// Where they are in the image.
     pub cutting_index: &'s ImageIndex,
-    /// Where the triangles are in the image.
-    pub triangle_index: &'s ImageIndex,
+    /// The triangles near each segment in space.
+    pub near: &'s NearTriangles,
+    /// The triangles that the near plane cuts.
+    pub cut_by_near_plane: &'s [u32],
     /// See [`super::super::Settings`].
     pub contact_tolerance: f64,
 }
@@ -49,9 +52,7 @@ pub(super) struct Surroundings<'s> {
 /// Work space of one thread, and what the segments traced with it have met.
 #[derive(Debug)]
 pub(super) struct Tracer {
-    cutting_visitor: Visitor,
-    /// Also serves sight lines.
-    pub triangle_visitor: Visitor,
+    visitor: Visitor,
 }
 
 /// What was found along one segment.
@@ -70,18 +71,16 @@ pub(super) struct Trace {
 impl Tracer {
     /// Work space for queries in `around`.
     pub(super) fn new(around: &Surroundings) -> Self {
-        Self {
-            cutting_visitor: Visitor::new(Some(around.cutting_index)),
-            triangle_visitor: Visitor::new(Some(around.triangle_index)),
-        }
+        Self { visitor: Visitor::new(Some(around.cutting_index)) }
     }
 
     /// Appends what changes the number of layers along `segment`; returns the change of the layers
-    /// that are carried along, from its first end to its last.
+    /// that are carried along, from its first end to its last. `number` is the segment's own.
     pub(super) fn trace(
         &mut self,
         view: &ViewedScene,
         around: &Surroundings,
+        number: usize,
         segment: &Segment,
         trace: &mut Trace,
     ) -> [i32; 2] {
@@ -89,7 +88,7 @@ impl Tracer {
         let bounds = around.cutting_index.bounds_of(segment);
         let ends_of = |edge: u32| around.cutting[edge as usize].ends;
         let index = around.cutting_index;
-        self.cutting_visitor.any_within(index, view, segment, &bounds, ends_of, |edge| {
+        self.visitor.any_within(index, view, segment, &bounds, ends_of, |edge| {
             trace.crossings_tested += 1;
             let edge = &around.cutting[edge as usize];
             if let Some(change) = crossing(view, index, segment, edge, &mut trace.irregular) {
@@ -99,19 +98,15 @@ impl Tracer {
             false
         });
 
-        let bounds = around.triangle_index.bounds_of(segment);
-        let corners = |triangle: u32| view.scene().triangles()[triangle as usize];
-        let index = around.triangle_index;
-        self.triangle_visitor.any_within(index, view, segment, &bounds, corners, |triangle| {
+        for &triangle in around.near.of(number) {
             trace.triangles_tested += 1;
             if let Some(change) = meeting(view, around, segment, triangle, trace) {
                 add(&mut total, change.by);
                 trace.changes.push(change);
             }
-            false
-        });
+        }
 
-        for &triangle in index.everywhere() {
+        for &triangle in around.cut_by_near_plane {
             trace.triangles_tested += 1;
             let tolerance = around.contact_tolerance;
             if let Some(Shadow::Covers(cover)) = shadow(view, segment, triangle, tolerance, false) {
