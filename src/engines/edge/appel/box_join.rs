@@ -17,7 +17,6 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// The lattice has 2 to this power places along each axis.
 const LATTICE_BITS: u32 = 30;
@@ -155,19 +154,43 @@ pub(super) fn meeting_pairs<R: Send>(
     visit: impl Fn(u32, &[u32], &mut Vec<R>) + Sync,
 ) -> Vec<R> {
     let grid = Grid::fit(Region { corner: [0; 3], bits: LATTICE_BITS }, &[first]);
-    let occupied = Occupied::by(&grid, first);
-    let second: Vec<Vec<LatticeBox>> = (0..n_second)
+    let touched: Vec<Vec<Touch>> = first
+        .par_chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, boxes)| grid.touched_by(boxes, chunk * CHUNK, |_| true))
+        .collect();
+    let occupied = Occupied::by(&grid, &touched);
+    let first = Cells::sort(&occupied, &touched, first);
+    drop(touched);
+    let (second, mut touched): (Vec<Vec<LatticeBox>>, Vec<Vec<Touch>>) = (0..n_second)
         .into_par_iter()
         .step_by(CHUNK)
         .map(|start| {
             let numbers = start as u32..(start + CHUNK).min(n_second) as u32;
-            let is_near = |b: &LatticeBox| grid.any_cell(b, |cell| occupied.contains(cell));
-            numbers.filter_map(&second).filter(is_near).collect()
+            let mut boxes = Vec::new();
+            let mut touched = Vec::new();
+            for b in numbers.filter_map(&second) {
+                let before = touched.len();
+                grid.for_cells(&b, |cell| {
+                    if occupied.contains(cell) {
+                        touched.push((cell, boxes.len() as u32));
+                    }
+                });
+                if touched.len() > before {
+                    boxes.push(b);
+                }
+            }
+            (boxes, touched)
         })
-        .collect();
+        .unzip();
+    let mut n_before = 0;
+    for (boxes, touched) in second.iter().zip(&mut touched) {
+        touched.iter_mut().for_each(|(_, index)| *index += n_before);
+        n_before += boxes.len() as u32;
+    }
     let second = second.concat();
-    let first = Cells::sort(&grid, &occupied, first);
-    let second = Cells::sort(&grid, &occupied, &second);
+    let second = Cells::sort(&occupied, &touched, &second);
+    drop(touched);
     let parts: Vec<Vec<R>> = occupied
         .cells
         .par_chunks(CELLS_CHUNK)
@@ -250,42 +273,41 @@ impl Grid {
         Region { corner, bits: self.region.bits - self.bits }
     }
 
-    /// Whether `f` holds for any of the cells that a box touches.
+    /// Calls `f` with the cells that a box touches.
     #[inline]
-    fn any_cell(&self, b: &LatticeBox, mut f: impl FnMut(u32) -> bool) -> bool {
+    fn for_cells(&self, b: &LatticeBox, mut f: impl FnMut(u32)) {
         let [low, high] = self.range(b);
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 let row = (z << (2 * self.bits)) + (y << self.bits);
                 for x in low[0]..=high[0] {
-                    if f(row + x) {
-                        return true;
-                    }
+                    f(row + x);
                 }
             }
         }
-        false
     }
 
-    /// Calls `f` with those of the cells that a box touches whose number lies in a range.
-    #[inline]
-    fn for_cells_among(&self, b: &LatticeBox, range: &Range<u32>, mut f: impl FnMut(u32)) {
-        self.any_cell(b, |cell| {
-            if range.contains(&cell) {
-                f(cell);
-            }
-            false
-        });
+    /// The `wanted` cells that some boxes touch; the first box has number `first`.
+    fn touched_by(
+        &self,
+        boxes: &[LatticeBox],
+        first: usize,
+        wanted: impl Fn(u32) -> bool,
+    ) -> Vec<Touch> {
+        let mut touched = Vec::with_capacity(2 * boxes.len());
+        for (index, b) in (first as u32..).zip(boxes) {
+            self.for_cells(b, |cell| {
+                if wanted(cell) {
+                    touched.push((cell, index));
+                }
+            });
+        }
+        touched
     }
 }
 
-/// How many boxes are worth a thread of their own.
-const SHARE: usize = 1 << 15;
-
-/// Shares of work on `n` boxes, one for each thread unless there is too little.
-fn n_shares(n: usize) -> usize {
-    rayon::current_num_threads().min(n.div_ceil(SHARE)).max(1)
-}
+/// A cell and the place, among the boxes of its set, of a box that touches it.
+type Touch = (u32, u32);
 
 /// The cells of a grid that hold boxes of the first set: a bit for each cell, and how many bits are
 /// set before each word.
@@ -297,21 +319,12 @@ struct Occupied {
 }
 
 impl Occupied {
-    fn by(grid: &Grid, boxes: &[LatticeBox]) -> Self {
+    fn by(grid: &Grid, touched: &[Vec<Touch>]) -> Self {
         let n_words = (1usize << (3 * grid.bits)).div_ceil(64);
         let mut words = vec![0u64; n_words];
-        // Each share owns some of the words, and reads all boxes.
-        let share = n_words.div_ceil(n_shares(boxes.len()));
-        words.par_chunks_mut(share).enumerate().for_each(|(i, words)| {
-            let start = (i * share * 64) as u32;
-            let range = start..start + (words.len() * 64) as u32;
-            for b in boxes {
-                grid.for_cells_among(b, &range, |cell| {
-                    let bit = cell - start;
-                    words[bit as usize / 64] |= 1 << (bit % 64);
-                });
-            }
-        });
+        for &(cell, _) in touched.iter().flatten() {
+            words[cell as usize / 64] |= 1 << (cell % 64);
+        }
         let mut ranks = Vec::with_capacity(n_words);
         let mut cells = Vec::new();
         for (i, &word) in words.iter().enumerate() {
@@ -341,85 +354,41 @@ impl Occupied {
 /// Boxes sorted by the occupied cells that they touch.
 struct Cells<'b> {
     boxes: &'b [LatticeBox],
-    parts: Vec<CellsPart>,
-}
-
-/// A run of occupied cells.
-struct CellsPart {
-    /// Rank of the first.
-    first: usize,
-    /// Where the boxes of each begin in `indices`, and where those of the last end.
+    /// Where the boxes of each cell begin in `indices`, and where those of the last end.
     starts: Vec<u32>,
     indices: Vec<u32>,
 }
 
 impl<'b> Cells<'b> {
-    fn sort(grid: &Grid, occupied: &Occupied, boxes: &'b [LatticeBox]) -> Self {
-        // Each part owns some of the cells, and reads all boxes.
-        let share = occupied.cells.len().div_ceil(n_shares(boxes.len())).max(1);
-        let parts = occupied
-            .cells
-            .par_chunks(share)
-            .enumerate()
-            .map(|(i, cells)| CellsPart::sort(grid, occupied, boxes, i * share, cells))
-            .collect();
-        Self { boxes, parts }
+    fn sort(occupied: &Occupied, touched: &[Vec<Touch>], boxes: &'b [LatticeBox]) -> Self {
+        let n_cells = occupied.cells.len();
+        let mut starts = vec![0u32; n_cells + 2];
+        for &(cell, _) in touched.iter().flatten() {
+            starts[occupied.rank(cell) + 2] += 1;
+        }
+        for i in 2..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut indices = vec![0; starts[n_cells + 1] as usize];
+        // The start of each cell moves to where the next one starts.
+        for &(cell, index) in touched.iter().flatten() {
+            let slot = &mut starts[occupied.rank(cell) + 1];
+            indices[*slot as usize] = index;
+            *slot += 1;
+        }
+        starts.pop();
+        Self { boxes, starts, indices }
     }
 
     /// The places among the boxes of those in one cell.
     fn of(&self, rank: usize) -> &[u32] {
-        let part = self.parts.partition_point(|part| part.first <= rank).checked_sub(1);
-        part.map_or(&[], |part| {
-            let part = &self.parts[part];
-            let i = rank - part.first;
-            &part.indices[part.starts[i] as usize..part.starts[i + 1] as usize]
-        })
-    }
-
-    /// How many boxes touch one cell.
-    fn count(&self, rank: usize) -> usize {
-        self.of(rank).len()
+        &self.indices[self.starts[rank] as usize..self.starts[rank + 1] as usize]
     }
 
     /// Puts the boxes of one cell into `here`.
     fn gather(&self, rank: usize, here: &mut Vec<LatticeBox>) {
         here.clear();
         here.extend(self.of(rank).iter().map(|&index| self.boxes[index as usize]));
-    }
-}
-
-impl CellsPart {
-    fn sort(
-        grid: &Grid,
-        occupied: &Occupied,
-        boxes: &[LatticeBox],
-        first: usize,
-        cells: &[u32],
-    ) -> Self {
-        let range = cells[0]..cells[cells.len() - 1] + 1;
-        let mut starts = vec![0u32; cells.len() + 2];
-        let for_all = |f: &mut dyn FnMut(usize, u32)| {
-            for (index, b) in boxes.iter().enumerate() {
-                grid.for_cells_among(b, &range, |cell| {
-                    if occupied.contains(cell) {
-                        f(occupied.rank(cell) - first, index as u32);
-                    }
-                });
-            }
-        };
-        for_all(&mut |cell, _| starts[cell + 2] += 1);
-        for i in 2..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut indices = vec![0; starts[cells.len() + 1] as usize];
-        // The start of each cell moves to where the next one starts.
-        for_all(&mut |cell, index| {
-            let slot = &mut starts[cell + 1];
-            indices[*slot as usize] = index;
-            *slot += 1;
-        });
-        starts.pop();
-        Self { first, starts, indices }
     }
 }
 
@@ -433,12 +402,14 @@ fn join(
 ) {
     if first.len() * second.len() > FEW_PAIRS {
         let grid = Grid::fit(region, &[first, second]);
-        let occupied = Occupied::by(&grid, first);
-        let first_cells = Cells::sort(&grid, &occupied, first);
-        let second_cells = Cells::sort(&grid, &occupied, second);
+        let touched = [grid.touched_by(first, 0, |_| true)];
+        let occupied = Occupied::by(&grid, &touched);
+        let first_cells = Cells::sort(&occupied, &touched, first);
+        let touched = [grid.touched_by(second, 0, |cell| occupied.contains(cell))];
+        let second_cells = Cells::sort(&occupied, &touched, second);
         let ranks = 0..occupied.cells.len();
         let n_pairs: usize =
-            ranks.map(|rank| first_cells.count(rank) * second_cells.count(rank)).sum();
+            ranks.map(|rank| first_cells.of(rank).len() * second_cells.of(rank).len()).sum();
         if n_pairs * WORTHWHILE <= first.len() * second.len() {
             let (mut first_here, mut second_here) = (Vec::new(), Vec::new());
             for (rank, &cell) in occupied.cells.iter().enumerate() {

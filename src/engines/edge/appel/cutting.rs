@@ -123,6 +123,7 @@ impl<'a> Sides<'a> {
 /// Whether a triangle covers anything and lies wholly beyond the near plane.
 ///
 /// Those that the near plane cuts are not carried along edges but asked one by one.
+#[inline]
 pub(super) fn is_counted(view: &ViewedScene, triangle: u32) -> bool {
     if view.triangle_turns()[triangle as usize] == Sign::Zero {
         return false;

@@ -11,7 +11,7 @@ use super::super::index::Rounding;
 use super::super::segment::Segment;
 use super::box_join::{Lattice, LatticeBox, Place, box_of_all, meeting_pairs};
 use super::cutting::is_counted;
-use crate::classify::ViewedScene;
+use crate::classify::{ImagePoint, ViewedScene};
 use crate::predicates::{Sign, Viewpoint};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -30,6 +30,7 @@ impl NearTriangles {
     pub(super) fn new(
         view: &ViewedScene,
         rounding: &Rounding,
+        places: &Places,
         segments: &[Option<Segment>],
         contact_tolerance: f64,
     ) -> Self {
@@ -37,17 +38,13 @@ impl NearTriangles {
             .par_iter()
             .map(|segment| segment.as_ref().map_or([0; 2], |segment| segment.ends))
             .collect();
-        let Some(lattice) = lattice(view, rounding, segments) else {
-            return Self::default();
-        };
-        let vertices = places_of_vertices(view, rounding, &lattice);
-        let near = Near { view, contact_tolerance, ends, vertices, lattice };
+        let near = Near { view, contact_tolerance, ends, places };
         let first: Vec<LatticeBox> = segments
             .par_iter()
             .enumerate()
             .filter_map(|(i, segment)| {
                 let bounds = rounding.bounds(segment.as_ref()?.image, segment.as_ref()?.depth);
-                lattice.place(bounds.corners()).of(i as u32)
+                places.lattice.place(bounds.corners()).of(i as u32)
             })
             .collect();
         let second = |triangle| near.box_of_triangle(triangle);
@@ -75,35 +72,42 @@ impl NearTriangles {
     }
 }
 
-/// A lattice over all segments whose cells are about as deep as they are wide.
-fn lattice(
-    view: &ViewedScene,
-    rounding: &Rounding,
-    segments: &[Option<Segment>],
-) -> Option<Lattice> {
-    let bounds = |segment: &Segment| rounding.bounds(segment.image, segment.depth).corners();
-    let boxes: Vec<[DVec3; 2]> = segments
-        .par_chunks(1 << 12)
-        .map(|chunk| box_of_all(chunk.iter().flatten().map(bounds)))
-        .collect();
-    let all = box_of_all(boxes.into_iter());
-    let units_per_image_unit = match view.sight().viewpoint() {
-        Viewpoint::Eye(_) => 0.5 * (all[0].z + all[1].z),
-        Viewpoint::Direction(_) => 1.0,
-    };
-    Lattice::over(all, units_per_image_unit)
+/// Where the images and the depths of the vertices lie on a lattice over all segments.
+pub(super) struct Places {
+    pub lattice: Lattice,
+    vertices: Vec<Place>,
 }
 
-/// Where the image and the depth of each vertex lie on a lattice.
-pub(super) fn places_of_vertices(
-    view: &ViewedScene,
-    rounding: &Rounding,
-    lattice: &Lattice,
-) -> Vec<Place> {
-    view.image()
-        .par_iter()
-        .map(|point| lattice.place(rounding.bounds([point.image()], [point.depth]).corners()))
-        .collect()
+impl Places {
+    /// Lays out a lattice whose cells are about as deep as they are wide; `None` when there are no
+    /// segments. O(segments + vertices).
+    pub(super) fn new(
+        view: &ViewedScene,
+        rounding: &Rounding,
+        segments: &[Option<Segment>],
+    ) -> Option<Self> {
+        let bounds = |segment: &Segment| rounding.bounds(segment.image, segment.depth).corners();
+        let boxes: Vec<[DVec3; 2]> = segments
+            .par_chunks(1 << 12)
+            .map(|chunk| box_of_all(chunk.iter().flatten().map(bounds)))
+            .collect();
+        let all = box_of_all(boxes.into_iter());
+        let units_per_image_unit = match view.sight().viewpoint() {
+            Viewpoint::Eye(_) => 0.5 * (all[0].z + all[1].z),
+            Viewpoint::Direction(_) => 1.0,
+        };
+        let lattice = Lattice::over(all, units_per_image_unit)?;
+        let place = |point: &ImagePoint| {
+            lattice.place(rounding.bounds([point.image()], [point.depth]).corners())
+        };
+        Some(Self { lattice, vertices: view.image().par_iter().map(place).collect() })
+    }
+
+    /// The place of a triangle.
+    #[inline]
+    pub(super) fn around(&self, corners: [u32; 3]) -> Place {
+        Place::around(corners.map(|corner| &self.vertices[corner as usize]))
+    }
 }
 
 struct Near<'n, 'a> {
@@ -111,8 +115,7 @@ struct Near<'n, 'a> {
     contact_tolerance: f64,
     /// The vertices of each segment.
     ends: Vec<[u32; 2]>,
-    vertices: Vec<Place>,
-    lattice: Lattice,
+    places: &'n Places,
 }
 
 impl Near<'_, '_> {
@@ -124,7 +127,7 @@ impl Near<'_, '_> {
             return None;
         }
         let corners = self.view.scene().triangles()[triangle as usize];
-        let mut place = Place::around(corners.map(|corner| &self.vertices[corner as usize]));
+        let mut place = self.places.around(corners);
         if self.contact_tolerance > 0.0 {
             let reach = self.view.sight().contact_reach(corners, self.contact_tolerance);
             let depths = corners.map(|corner| self.view.image()[corner as usize].depth);
@@ -133,7 +136,7 @@ impl Near<'_, '_> {
                 Viewpoint::Eye(_) => farthest,
                 Viewpoint::Direction(forward) => forward.length(),
             };
-            let farthest = self.lattice.z_place(farthest + reach * length);
+            let farthest = self.places.lattice.z_place(farthest + reach * length);
             place.high[2] = place.high[2].max(farthest);
         }
         place.of(triangle)

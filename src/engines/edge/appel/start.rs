@@ -3,9 +3,9 @@
 use super::super::index::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Sides, side_of};
-use super::box_join::{Lattice, LatticeBox, Place, box_of_all, meeting_pairs};
+use super::box_join::{LatticeBox, Place, meeting_pairs};
 use super::cutting::{Stars, is_counted};
-use super::near::places_of_vertices;
+use super::near::Places;
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;
 
@@ -112,31 +112,27 @@ pub(super) fn local_layers(
 pub(super) fn layers_beyond<'s>(
     view: &ViewedScene,
     rounding: &Rounding,
+    places: &Places,
     ends: impl Iterator<Item = (Option<&'s Segment>, usize)>,
 ) -> Vec<[i32; 2]> {
     let questions: Vec<(Option<&Segment>, usize)> = ends.collect();
     let mut layers = vec![[0; 2]; questions.len()];
-    let ends = || (0..).zip(&questions).filter_map(|(i, &(segment, end))| Some((i, segment?, end)));
-    let bounds = |segment: &Segment, end: usize| {
-        rounding.bounds([segment.image[end]], [segment.depth[end]]).corners()
-    };
-    let all = box_of_all(ends().map(|(_, segment, end)| bounds(segment, end)));
-    let Some(lattice) = Lattice::over(all.map(|corner| corner.with_z(0.0)), 1.0) else {
-        return layers;
-    };
-    let vertices = places_of_vertices(view, rounding, &lattice);
     // Whether a triangle is in front is asked of it, so that depths are of no use here.
     let flat = |place: Place, number: u32| {
         Place { low: [place.low[0], place.low[1], 1], high: [place.high[0], place.high[1], 1] }
             .of(number)
     };
-    let first: Vec<LatticeBox> = ends()
-        .filter_map(|(i, segment, end)| flat(lattice.place(bounds(segment, end)), i))
+    let first: Vec<LatticeBox> = (0..)
+        .zip(&questions)
+        .filter_map(|(i, &(segment, end))| {
+            let segment = segment?;
+            let bounds = rounding.bounds([segment.image[end]], [segment.depth[end]]);
+            flat(places.lattice.place(bounds.corners()), i)
+        })
         .collect();
     let second = |triangle| {
         let corners = view.scene().triangles()[triangle as usize];
-        let place = Place::around(corners.map(|corner| &vertices[corner as usize]));
-        is_counted(view, triangle).then(|| flat(place, triangle))?
+        is_counted(view, triangle).then(|| flat(places.around(corners), triangle))?
     };
     let n_triangles = view.scene().triangles().len();
     let found = meeting_pairs(&first, n_triangles, second, |triangle, meeting, found| {
