@@ -55,7 +55,9 @@ struct Settings {
     fov: Option<f64>,
     up_axis: Option<String>,
     crease: Option<f64>,
+    lines: Option<String>,
     hidden: Option<String>,
+    hidden_levels: Option<u32>,
     dash: Option<String>,
     shortest_stroke: Option<Scalar>,
     format: Option<String>,
@@ -72,7 +74,7 @@ struct Settings {
 }
 
 /// Names in [`Settings`], which the environment can give too.
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 29] = [
     "page",
     "landscape",
     "portrait",
@@ -86,7 +88,9 @@ const NAMES: [&str; 27] = [
     "fov",
     "up-axis",
     "crease",
+    "lines",
     "hidden",
+    "hidden-levels",
     "dash",
     "shortest-stroke",
     "format",
@@ -160,7 +164,12 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
         let mut used = Vec::new();
         for (name, value) in &layer.options {
             let by_name = |arg: &&clap::Arg| arg.get_long() == Some(name.as_str());
-            // Settings for other commands are none for this one.
+            // Settings for other commands are none for this one: kinds of line are those of models.
+            if name == "lines"
+                && !options.get_arguments().any(|arg| arg.get_long() == Some("crease"))
+            {
+                continue;
+            }
             let Some(arg) = options.get_arguments().find(by_name) else { continue };
             let conflicts = |a: &clap::Arg, b: &clap::Arg| {
                 options.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == b.get_id())

@@ -61,7 +61,7 @@ use super::{Counts, Settings};
 use crate::classify::ViewedScene;
 use crate::predicates::CutPlane;
 use crate::visibility::Visibility;
-use cutting::{Sides, Stars};
+use cutting::Stars;
 use doubled::Partners;
 use near::NearTriangles;
 use propagate::{Base, Levels};
@@ -69,6 +69,8 @@ use rayon::prelude::*;
 use start::{is_plain, layers_beyond, local_layers};
 use std::sync::Mutex;
 use trace::{Change, Surroundings, Trace, Tracer};
+
+pub(super) use cutting::Sides;
 
 /// How many segments make one piece of parallel work.
 const CHUNK: usize = 512;

@@ -34,7 +34,7 @@ pub(super) struct CuttingEdge {
 
 /// The sides of all triangles with the triangles along each.
 #[derive(Debug)]
-pub(super) struct Sides<'a> {
+pub(in super::super) struct Sides<'a> {
     table: Cow<'a, Topology>,
     /// The faces are the triangles, so that sides have the numbers of edges.
     sides_are_edges: bool,
@@ -42,7 +42,7 @@ pub(super) struct Sides<'a> {
 
 impl<'a> Sides<'a> {
     /// The sides of the triangles of a scene. O(triangles) when faces have more than three corners.
-    pub(super) fn new(view: &ViewedScene<'a>) -> Self {
+    pub(in super::super) fn new(view: &ViewedScene<'a>) -> Self {
         let scene = view.scene();
         let triangles = scene.triangles();
         // A face of n corners makes n − 2 triangles: as many as faces means that they are the same.
@@ -57,7 +57,7 @@ impl<'a> Sides<'a> {
     }
 
     /// The triangles along an edge, each with whether it runs along it upwards.
-    pub(super) fn along_edge(
+    pub(in super::super) fn along_edge(
         &self,
         view: &ViewedScene,
         edge: u32,
