@@ -1,7 +1,7 @@
 //! The outline: against the truth on random scenes, and where it is known in closed form.
 
 use crate::engines::{assert_truth, camera, mesh};
-use crate::oracle::{EdgeTruth, Kind};
+use crate::oracle::EdgeTruth;
 use crate::scenes::{Model, P, Scene as TestScene, orthographic, perspective};
 use crate::truth::{Image, compare_strokes};
 use hiddenline::classify::{LineSelection, ViewedScene};

@@ -124,10 +124,8 @@ fn outline_of(
         let touches_both = corners(triangle).contains(&a) && corners(triangle).contains(&b);
         touches_both == is_own && image_cover(view, segment, triangle).is_some_and(&mut add)
     };
-    let bounds = index.bounds_of(segment);
     let is_inside = sides.along_edge(view, segment.edge).any(|(own, _)| test(own, true))
-        || index.everywhere().iter().any(|&triangle| test(triangle, false))
-        || visitor.any_within(index, view, segment, &bounds, corners, |t| test(t, false));
+        || visitor.any(index, view, segment, |triangle| test(triangle, false));
     if is_inside {
         return Vec::new();
     }

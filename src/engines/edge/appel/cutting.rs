@@ -56,6 +56,15 @@ impl<'a> Sides<'a> {
         Self { table, sides_are_edges }
     }
 
+    /// Whether every side has an even number of triangles, so that they enclose whatever they do.
+    pub(super) fn are_closed(&self) -> bool {
+        let n_sides = self.table.edges().len() as u32;
+        (0..n_sides)
+            .into_par_iter()
+            .with_min_len(4096)
+            .all(|side| self.table.uses(side).len() % 2 == 0)
+    }
+
     /// The triangles along an edge, each with whether it runs along it upwards.
     pub(in super::super) fn along_edge(
         &self,
