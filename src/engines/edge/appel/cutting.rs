@@ -62,7 +62,7 @@ impl<'a> Sides<'a> {
         (0..n_sides)
             .into_par_iter()
             .with_min_len(4096)
-            .all(|side| self.table.uses(side).len() % 2 == 0)
+            .all(|side| self.table.uses(side).len().is_multiple_of(2))
     }
 
     /// The triangles along an edge, each with whether it runs along it upwards.
