@@ -17,7 +17,7 @@ use hiddenline::page::{
 use hiddenline::read::ModelFormat;
 use hiddenline::view::{DEFAULT_FOV_DEG, DEFAULT_NEAR};
 use hiddenline::writers::Format;
-use hiddenline::writers::png::Resolution;
+use hiddenline::writers::png::{Marks, Resolution};
 use hiddenline::writers::svg::StrokeElement;
 
 use super::machine::Target;
@@ -234,6 +234,12 @@ pub(super) struct OutputArgs {
     /// Pixels from left to right of a PNG
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..))]
     png_width: Option<u32>,
+    /// Show in a PNG how the pens go: travel, order, or both with a comma between them
+    ///
+    /// travel: the ways with the pen up, as thin red lines; order: strokes from blue for the first by
+    /// green to red for the last.
+    #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
+    png_show: Vec<PngMark>,
     /// Threads to work with [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -331,6 +337,12 @@ enum FormatName {
     Json,
 }
 
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum PngMark {
+    Travel,
+    Order,
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 enum SvgElement {
     Path,
@@ -357,6 +369,7 @@ pub(super) struct OutputOptions {
     pub(super) format: Format,
     pub(super) svg_element: StrokeElement,
     pub(super) resolution: Resolution,
+    pub(super) marks: Marks,
     pub(super) threads: Option<usize>,
     pub(super) stats: bool,
     pub(super) quiet: bool,
@@ -505,6 +518,10 @@ impl OutputArgs {
             svg_element: match self.svg_element {
                 SvgElement::Path => StrokeElement::Path,
                 SvgElement::Polyline => StrokeElement::Polyline,
+            },
+            marks: Marks {
+                travel: self.png_show.contains(&PngMark::Travel),
+                order: self.png_show.contains(&PngMark::Order),
             },
             resolution: match (self.dpi, self.png_width) {
                 (_, Some(width)) => Resolution::WidthPx(width),

@@ -36,6 +36,9 @@ struct File {
     defaults: Settings,
     #[serde(default)]
     preset: BTreeMap<String, Settings>,
+    /// Machines of one's own.
+    #[serde(default)]
+    machine: BTreeMap<String, toml::Table>,
 }
 
 /// Options that can be set; each is named as on the command line.
@@ -233,6 +236,23 @@ fn layers(preset: Option<String>) -> Result<Vec<Layer>, ConfigError> {
     Ok(layers)
 }
 
+/// The machine called `name` in the first file that has one, and what to call that place; and the
+/// names of all.
+pub(super) fn machine(name: &str) -> Result<(Option<(toml::Table, String)>, Vec<String>), String> {
+    let mut found = None;
+    let mut names = Vec::new();
+    for path in paths() {
+        let file = read(&path).map_err(|error| error.to_string())?.unwrap_or_default();
+        for (own, table) in file.machine {
+            if found.is_none() && own.eq_ignore_ascii_case(name) {
+                found = Some((table, format!("machine {own} in {}", path.display())));
+            }
+            names.push(own);
+        }
+    }
+    Ok((found, names))
+}
+
 fn preset_names(files: &[(PathBuf, File)]) -> Vec<&str> {
     let names = files.iter().flat_map(|(_, file)| file.preset.keys().map(String::as_str));
     let mut names: Vec<&str> = names.collect();
@@ -323,6 +343,9 @@ pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
         if let Some(file) = read(&path)? {
             for name in file.preset.keys() {
                 writeln!(text, "#   preset {name}")?;
+            }
+            for name in file.machine.keys() {
+                writeln!(text, "#   machine {name}")?;
             }
         }
     }

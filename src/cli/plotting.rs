@@ -48,8 +48,9 @@ pub(super) struct PlotArgs {
     split_distance: Option<f64>,
     /// What draws: it decides HPGL and G-code, and the estimate of the time
     ///
-    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan. G-code: grbl-servo (default),
-    /// grbl-z, grbl-laser, marlin. For the estimate also saxi (default), axidraw, grbl.
+    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan, dmp-161, dxy, sketchmate.
+    /// G-code: grbl-servo (default), grbl-z, grbl-laser, marlin. For the estimate also saxi
+    /// (default), axidraw, grbl. A configuration file can have more: [machine.NAME].
     #[arg(long, value_name = "NAME", conflicts_with = "gcode_profile")]
     machine: Option<String>,
     /// Templates of a G-code machine of your own, as TOML
