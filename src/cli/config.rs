@@ -119,7 +119,7 @@ enum Scalar {
 
 /// Why settings cannot be used.
 #[derive(Debug, Error)]
-enum ConfigError {
+pub(super) enum ConfigError {
     #[error("cannot read {}: {error}", path.display())]
     Read { path: PathBuf, error: std::io::Error },
     #[error("{}: {error}", path.display())]
@@ -236,21 +236,28 @@ fn layers(preset: Option<String>) -> Result<Vec<Layer>, ConfigError> {
     Ok(layers)
 }
 
-/// The machine called `name` in the first file that has one, and what to call that place; and the
-/// names of all.
-pub(super) fn machine(name: &str) -> Result<(Option<(toml::Table, String)>, Vec<String>), String> {
-    let mut found = None;
-    let mut names = Vec::new();
+/// Machines of the configuration files.
+#[derive(Default)]
+pub(super) struct OwnMachines {
+    /// The one that was asked for, and what to call its place.
+    pub(super) found: Option<(toml::Table, String)>,
+    /// The names of all.
+    pub(super) names: Vec<String>,
+}
+
+/// The machine called `name` in the first file that has one.
+pub(super) fn machine(name: &str) -> Result<OwnMachines, ConfigError> {
+    let mut machines = OwnMachines::default();
     for path in paths() {
-        let file = read(&path).map_err(|error| error.to_string())?.unwrap_or_default();
+        let file = read(&path)?.unwrap_or_default();
         for (own, table) in file.machine {
-            if found.is_none() && own.eq_ignore_ascii_case(name) {
-                found = Some((table, format!("machine {own} in {}", path.display())));
+            if machines.found.is_none() && own.eq_ignore_ascii_case(name) {
+                machines.found = Some((table, format!("machine {own} in {}", path.display())));
             }
-            names.push(own);
+            machines.names.push(own);
         }
     }
-    Ok((found, names))
+    Ok(machines)
 }
 
 fn preset_names(files: &[(PathBuf, File)]) -> Vec<&str> {

@@ -40,8 +40,8 @@ pub(super) enum MachineError {
     Read { path: PathBuf, error: std::io::Error },
     #[error("{}: {error}", path.display())]
     Profile { path: PathBuf, error: gcode::Error },
-    #[error("{0}")]
-    Settings(String),
+    #[error(transparent)]
+    Settings(#[from] config::ConfigError),
     #[error("{origin}: {error}")]
     Own { origin: String, error: Box<dyn std::error::Error + Send + Sync> },
     #[error(transparent)]
@@ -75,11 +75,10 @@ impl Target {
             Format::Gcode => DEFAULT_GCODE,
             _ => "saxi",
         });
-        let (own, own_names) = match name {
-            Some(name) => config::machine(name).map_err(MachineError::Settings)?,
-            None => (None, Vec::new()),
-        };
-        let own = own.map(|(table, origin)| own_machine(wanted, table, origin)).transpose()?;
+        let own = name.map(config::machine).transpose()?.unwrap_or_default();
+        let own_names = own.names;
+        let own =
+            own.found.map(|(table, origin)| own_machine(wanted, table, origin)).transpose()?;
         let found = match (own, plotter(wanted), profile(wanted)) {
             (Some(own), ..) => own,
             (None, Some(plotter), _) => {
