@@ -72,7 +72,13 @@ fn settings() -> Settings {
 }
 
 fn chaining() -> ChainOptions {
-    ChainOptions { hidden: false, exact: false, apart_by_kind: false, shortest: 0.0 }
+    ChainOptions {
+        hidden: false,
+        hidden_levels: None,
+        exact: false,
+        apart_by_kind: false,
+        shortest: 0.0,
+    }
 }
 
 fn view(scene: &Scene, lines: LineSelection) -> ViewedScene<'_> {
@@ -116,7 +122,7 @@ fn f_strokes_of_all_edges(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, LineSelection::all_edges());
     let (visibility, ..) = solve(&view, Engine::default(), &settings());
-    bencher.bench_local(|| chain(black_box(&view), &visibility, &chaining()));
+    bencher.bench_local(|| chain(black_box(&view), &visibility, None, &chaining()));
 }
 
 #[divan::bench(args = SIZES)]
@@ -124,7 +130,7 @@ fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, LineSelection::all_edges());
     let (visibility, ..) = solve(&view, Engine::default(), &settings());
-    let drawing = chain(&view, &visibility, &chaining());
+    let drawing = chain(&view, &visibility, None, &chaining());
     bencher.bench_local(|| {
         let page = Page::new(&drawing, &camera(), &PageOptions::default()).expect("a page");
         let options = PlotOptions {

@@ -13,6 +13,7 @@
 //! ```
 
 use crate::classify::ViewedScene;
+use crate::engines::edge::outline::Outline;
 use crate::strokes::{Drawing, StrokeKind};
 use crate::visibility::{Span, Visibility};
 use glam::DVec2;
@@ -23,6 +24,9 @@ use rayon::prelude::*;
 pub struct ChainOptions {
     /// Keep hidden spans too.
     pub hidden: bool,
+    /// Of the hidden spans keep only those covered at most so often, and join only those covered
+    /// equally often; `None` keeps and joins all of them.
+    pub hidden_levels: Option<u32>,
     /// One two-point stroke for each maximal visible span and each hidden one of constant `qi`;
     /// nothing is joined, dropped or left out because it is drawn already.
     pub exact: bool,
@@ -39,58 +43,113 @@ pub struct ChainOptions {
 struct Piece {
     kind: StrokeKind,
     qi: u32,
+    outline: bool,
     points: [DVec2; 2],
     /// The mesh's vertex at each end, or [`FREE`] where a cut ends the piece.
     ends: [u32; 2],
 }
+
+/// Two cuts at one place, each within `2⁻³⁶` of it, are no further apart than this as parameters of
+/// their edge: what lies between them is rounding.
+const SAME_CUT: f64 = 1.0 / (1u64 << 35) as f64;
 
 /// The end of a piece at which no other can join.
 const FREE: u32 = u32::MAX;
 
 /// Turns the spans of all drawn edges into strokes, in the order of the edges.
 ///
-/// O(pieces log pieces), except at vertices where very many edges meet, which are joined in order.
-pub fn chain(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -> Drawing {
-    let pieces = pieces(view, visibility, options);
+/// With `outline`, visible strokes tell whether they are part of it. O(pieces log pieces), except at
+/// vertices where very many edges meet, which are joined in order.
+pub fn chain(
+    view: &ViewedScene,
+    visibility: &Visibility,
+    outline: Option<&Outline>,
+    options: &ChainOptions,
+) -> Drawing {
+    let pieces = pieces(view, visibility, outline, options);
     let mut drawing = Drawing::default();
     if options.exact {
-        for piece in &pieces {
-            drawing.push(piece.kind, piece.qi, piece.points);
-        }
+        pieces.iter().for_each(|piece| push(&mut drawing, piece, &piece.points));
         return drawing;
     }
-    let links = link(&pieces, options.apart_by_kind);
-    let mut is_drawn = vec![false; pieces.len()];
+    // What is short is so by all visible lines that go on from it, whatever draws them.
+    let is_visible = |piece: &Piece| (0, piece.qi.min(1));
+    let mut is_short = vec![false; pieces.len()];
     let mut points = Vec::new();
+    let links = link(&pieces, is_visible);
+    if options.shortest > 0.0 {
+        for_each_trail(&links, |trail| {
+            points_along(&pieces, trail, &mut points);
+            let first = &pieces[trail[0] as usize / 2];
+            if first.qi == 0 && is_shorter(&points, options.shortest) {
+                trail.iter().for_each(|&end| is_short[end as usize / 2] = true);
+            }
+        });
+    }
+    let is_apart = options.apart_by_kind || options.hidden_levels.is_some() || outline.is_some();
+    let links = if is_apart { link(&pieces, |piece| class(piece, options)) } else { links };
+    for_each_trail(&links, |trail| {
+        let first = &pieces[trail[0] as usize / 2];
+        if !is_short[trail[0] as usize / 2] {
+            points_along(&pieces, trail, &mut points);
+            push(&mut drawing, first, &points);
+        }
+    });
+    drawing
+}
+
+fn push(drawing: &mut Drawing, first: &Piece, points: &[DVec2]) {
+    if first.outline {
+        drawing.push_outline(first.kind, points.iter().copied());
+    } else {
+        drawing.push(first.kind, first.qi, points.iter().copied());
+    }
+}
+
+/// Pieces of one class may join.
+fn class(piece: &Piece, options: &ChainOptions) -> (u32, u32) {
+    let kind = if options.apart_by_kind { piece.kind as u32 } else { 0 };
+    let levels_apart = options.apart_by_kind || options.hidden_levels.is_some();
+    let qi = if levels_apart { piece.qi } else { piece.qi.min(1) };
+    (kind << 1 | u32::from(piece.outline), qi)
+}
+
+/// Calls `f` with each trail of joined pieces, as the ends at which they are entered.
+fn for_each_trail(links: &[u32], mut f: impl FnMut(&[u32])) {
+    let mut is_drawn = vec![false; links.len() / 2];
+    let mut trail = Vec::new();
     // Trails with loose ends first, from the end that comes first; then closed ones.
     for closed in [false, true] {
-        for start in 0..2 * pieces.len() as u32 {
+        for start in 0..links.len() as u32 {
             let is_loose = links[start as usize] == FREE;
             if is_drawn[start as usize / 2] || !(closed || is_loose) {
                 continue;
             }
-            points.clear();
+            trail.clear();
             let mut end = start;
             loop {
-                let piece = &pieces[end as usize / 2];
                 is_drawn[end as usize / 2] = true;
-                if points.is_empty() {
-                    points.push(piece.points[end as usize % 2]);
-                }
-                points.push(piece.points[1 - end as usize % 2]);
+                trail.push(end);
                 end = links[(end ^ 1) as usize];
                 if end == FREE || is_drawn[end as usize / 2] {
                     break;
                 }
             }
-            let first = &pieces[start as usize / 2];
-            if first.qi == 0 && is_shorter(&points, options.shortest) {
-                continue;
-            }
-            drawing.push(first.kind, first.qi, points.iter().copied());
+            f(&trail);
         }
     }
-    drawing
+}
+
+/// The points of a trail.
+fn points_along(pieces: &[Piece], trail: &[u32], points: &mut Vec<DVec2>) {
+    points.clear();
+    for &end in trail {
+        let piece = &pieces[end as usize / 2];
+        if points.is_empty() {
+            points.push(piece.points[end as usize % 2]);
+        }
+        points.push(piece.points[1 - end as usize % 2]);
+    }
 }
 
 fn is_shorter(points: &[DVec2], limit: f64) -> bool {
@@ -105,7 +164,12 @@ fn is_shorter(points: &[DVec2], limit: f64) -> bool {
 }
 
 /// The pieces to draw, in the order of edges and spans.
-fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -> Vec<Piece> {
+fn pieces(
+    view: &ViewedScene,
+    visibility: &Visibility,
+    outline: Option<&Outline>,
+    options: &ChainOptions,
+) -> Vec<Piece> {
     const CHUNK: usize = 4096;
     let parts: Vec<Vec<Piece>> = view
         .drawn()
@@ -113,7 +177,8 @@ fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -
         .enumerate()
         .map(|(chunk, drawn)| {
             let mut pieces = Vec::with_capacity(drawn.len());
-            let mut spans = Vec::new();
+            let (mut spans, mut parts) = (Vec::new(), Vec::<[f64; 2]>::new());
+            let deepest = options.hidden_levels.unwrap_or(u32::MAX);
             for (i, drawn) in drawn.iter().enumerate() {
                 let ends = view.scene().topology().edge(drawn.edge);
                 let images = ends.map(|end| view.image()[end as usize]);
@@ -129,20 +194,38 @@ fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -
                 };
                 spans.clear();
                 spans.extend_from_slice(visibility.spans(chunk * CHUNK + i));
+                parts.clear();
+                parts.extend(outline.into_iter().flat_map(|o| o.parts(chunk * CHUNK + i)));
                 if !options.exact && options.shortest > 0.0 {
-                    close_gaps(&mut spans, |t0, t1| at(t0).distance(at(t1)) < options.shortest);
+                    let is_short = |t0, t1| at(t0).distance(at(t1)) < options.shortest;
+                    close_gaps(&mut spans, is_short);
+                    parts.dedup_by(|next, last| {
+                        let is_gap_short = is_short(last[1], next[0]);
+                        last[1] = if is_gap_short { next[1] } else { last[1] };
+                        is_gap_short
+                    });
                 }
                 merge(&mut spans, options);
-                let kept = spans.iter().filter(|span| span.qi == 0 || options.hidden);
+                let only_outline = outline.is_some() && view.is_only_outline(drawn.edge);
+                let kept = spans.iter().filter(|span| {
+                    span.qi == 0 || options.hidden && span.qi <= deepest && !only_outline
+                });
                 for span in kept.filter(|span| options.exact || !span.doubled) {
-                    pieces.push(Piece {
-                        kind: drawn.kind,
-                        qi: span.qi,
-                        points: [at(span.t0), at(span.t1)],
-                        ends: [
-                            if span.t0 == 0.0 { ends[0] } else { FREE },
-                            if span.t1 == 1.0 { ends[1] } else { FREE },
-                        ],
+                    let parts = if span.qi == 0 { &parts[..] } else { &[] };
+                    split(span, parts, |t0, t1, outline| {
+                        if only_outline && !outline {
+                            return;
+                        }
+                        pieces.push(Piece {
+                            kind: drawn.kind,
+                            qi: span.qi,
+                            outline,
+                            points: [at(t0), at(t1)],
+                            ends: [
+                                if t0 == 0.0 { ends[0] } else { FREE },
+                                if t1 == 1.0 { ends[1] } else { FREE },
+                            ],
+                        });
                     });
                 }
             }
@@ -150,6 +233,27 @@ fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -
         })
         .collect();
     parts.concat()
+}
+
+/// Calls `f` with the stretches of a span, each with whether it is one of the outline's parts.
+fn split(span: &Span, parts: &[[f64; 2]], mut f: impl FnMut(f64, f64, bool)) {
+    let mut start = span.t0;
+    for &[from, to] in parts {
+        let (from, to) = (from.max(start), to.min(span.t1));
+        if to - from <= SAME_CUT {
+            continue;
+        }
+        if from - start > SAME_CUT {
+            f(start, from, false);
+            start = from;
+        }
+        let to = if span.t1 - to <= SAME_CUT { span.t1 } else { to };
+        f(start, to, true);
+        start = to;
+    }
+    if start < span.t1 || start == span.t0 {
+        f(start, span.t1, false);
+    }
 }
 
 /// Makes short hidden spans between two visible ones visible.
@@ -171,7 +275,8 @@ fn close_gaps(spans: &mut [Span], is_short: impl Fn(f64, f64) -> bool) {
 fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
     spans.dedup_by(|next, last| {
         let same_doubling = options.exact || next.doubled == last.doubled;
-        let as_one_pen = !options.exact && !options.apart_by_kind;
+        let as_one_pen =
+            !options.exact && !options.apart_by_kind && options.hidden_levels.is_none();
         let same_layers = next.qi == last.qi || (as_one_pen && next.qi > 0 && last.qi > 0);
         let alike = same_doubling && same_layers;
         if alike {
@@ -182,11 +287,8 @@ fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
 }
 
 /// For each end of each piece (numbered `2 · piece + side`) the end it is joined to, or [`FREE`].
-fn link(pieces: &[Piece], apart_by_kind: bool) -> Vec<u32> {
+fn link(pieces: &[Piece], class: impl Fn(&Piece) -> (u32, u32)) -> Vec<u32> {
     let mut links = vec![FREE; 2 * pieces.len()];
-    let class = |piece: &Piece| {
-        if apart_by_kind { (piece.kind as u32, piece.qi) } else { (0, piece.qi.min(1)) }
-    };
     // Ends by vertex, then class, then number: ends that may join are neighbours.
     let mut ends: Vec<(u32, (u32, u32), u32)> = (0..links.len() as u32)
         .filter_map(|end| {

@@ -9,11 +9,13 @@
 //! | nonmanifold | 3 or more | |
 //! | silhouette | 2 | one face front, the other not |
 //! | crease | 2 | angle between the normals above a threshold |
+//! | material | 2 | between two materials or groups; only when asked for |
 //! | mesh | any | |
 //!
 //! Two uses that run the same way mean that the faces are wound against each other; the second
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
 
+use crate::mesh::Mesh;
 use crate::predicates::{Sight, Sign};
 use crate::scene::Scene;
 use crate::strokes::StrokeKind;
@@ -22,9 +24,13 @@ use crate::triangulate::newell_normal;
 use crate::view::{Camera, Frame, Projection};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Faces that meet at more than this angle, in degrees, make a crease unless set otherwise.
 pub const DEFAULT_CREASE_DEG: f64 = 30.0;
+
+/// The outline's place among the bits of the kinds.
+const OUTLINE: u32 = 1 << 31;
 
 /// Which kinds of line are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,6 +62,23 @@ impl LineSelection {
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self { kinds: self.kinds | other.kinds }
+    }
+
+    /// Adds the outline: of silhouette, boundary and non-manifold edges the parts beside which only
+    /// the background is seen (see [`crate::engines::edge::outline`]).
+    #[must_use]
+    pub const fn with_outline(self) -> Self {
+        Self { kinds: self.kinds | OUTLINE }
+    }
+
+    /// Whether the outline is drawn.
+    pub const fn has_outline(self) -> bool {
+        self.kinds & OUTLINE != 0
+    }
+
+    /// Whether anything else than the outline is drawn.
+    pub const fn has_more_than_outline(self) -> bool {
+        self.kinds & !OUTLINE != 0
     }
 
     /// Whether a kind is drawn.
@@ -141,6 +164,8 @@ pub struct ViewedScene<'a> {
     /// Empty when every face is a triangle, since the turns then say it all.
     facings: Vec<Sign>,
     drawn: Vec<DrawnEdge>,
+    /// Those of `drawn` of which only the outline is wanted.
+    only_outline: Vec<u32>,
     near_plane_cuts: bool,
 }
 
@@ -175,9 +200,13 @@ impl<'a> ViewedScene<'a> {
             triangle_turns,
             facings,
             drawn: Vec::new(),
+            only_outline: Vec::new(),
             near_plane_cuts,
         };
-        view.drawn = view.select(lines, crease_deg);
+        let selected = view.select(lines, crease_deg);
+        let only_outline = selected.iter().filter(|(_, is_whole)| !is_whole);
+        view.only_outline = only_outline.map(|(drawn, _)| drawn.edge).collect();
+        view.drawn = selected.into_iter().map(|(drawn, _)| drawn).collect();
         view
     }
 
@@ -239,34 +268,58 @@ impl<'a> ViewedScene<'a> {
         self.drawn.binary_search_by_key(&edge, |drawn| drawn.edge).is_ok()
     }
 
+    /// Whether of a drawn edge only the parts that are outline are wanted. O(log edges).
+    pub fn is_only_outline(&self, edge: u32) -> bool {
+        self.only_outline.binary_search(&edge).is_ok()
+    }
+
     /// Whether any vertex is not strictly beyond the near plane.
     pub fn near_plane_cuts(&self) -> bool {
         self.near_plane_cuts
     }
 
-    fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<DrawnEdge> {
+    /// The edges to draw, each with whether all of it is wanted and not only the outline.
+    fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<(DrawnEdge, bool)> {
         let n_edges = self.scene.topology().edges().len() as u32;
         let creases = Creases::new(crease_deg);
+        let borders = Borders::new(self.scene.mesh(), lines);
+        let of_outline = LineSelection::NONE
+            .with(StrokeKind::Silhouette)
+            .with(StrokeKind::Boundary)
+            .with(StrokeKind::Nonmanifold);
         (0..n_edges)
             .into_par_iter()
             .with_min_len(4096)
             .filter_map(|edge| {
-                let kind = self.kind(edge, lines, &creases)?;
+                let whole = self.kind(edge, lines, &creases, &borders);
+                let kind = whole.or_else(|| {
+                    let outlined = lines.has_outline();
+                    outlined.then(|| self.kind(edge, of_outline, &creases, &borders))?
+                })?;
                 let [a, b] = self.scene.topology().edge(edge);
-                (!self.sight.same_image(a, b)).then_some(DrawnEdge { edge, kind })
+                let drawn = (DrawnEdge { edge, kind }, whole.is_some());
+                (!self.sight.same_image(a, b)).then_some(drawn)
             })
             .collect()
     }
 
     /// The first kind that applies to an edge, when any that applies is among `lines`.
-    fn kind(&self, edge: u32, lines: LineSelection, creases: &Creases) -> Option<StrokeKind> {
+    fn kind(
+        &self,
+        edge: u32,
+        lines: LineSelection,
+        creases: &Creases,
+        borders: &Borders,
+    ) -> Option<StrokeKind> {
         let topology = self.scene.topology();
         let every = lines.contains(StrokeKind::Mesh);
+        let by_material =
+            || lines.contains(StrokeKind::Material) && borders.lie_between(topology.uses(edge));
         let chosen = |kind| (every || lines.contains(kind)).then_some(kind);
         let &[first, second] = topology.uses(edge) else {
             let is_boundary = topology.uses(edge).len() == 1;
             let kind = if is_boundary { StrokeKind::Boundary } else { StrokeKind::Nonmanifold };
-            return chosen(kind);
+            return chosen(kind).or_else(|| by_material().then_some(kind));
         };
         let faces = [first, second].map(EdgeUse::face);
         let against = first.runs_upwards() == second.runs_upwards();
@@ -276,17 +329,49 @@ impl<'a> ViewedScene<'a> {
         let is_crease = || creases.holds(faces.map(|face| self.normal(face)), against);
         if (facing == Sign::Positive) != (other == Sign::Positive) {
             let by_crease = || lines.contains(StrokeKind::Crease) && is_crease();
-            let selected = every || lines.contains(StrokeKind::Silhouette) || by_crease();
+            let by_name = every || lines.contains(StrokeKind::Silhouette);
+            let selected = by_name || by_crease() || by_material();
             return selected.then_some(StrokeKind::Silhouette);
         }
-        if !every && !lines.contains(StrokeKind::Crease) {
+        let is_border = by_material();
+        if !every && !is_border && !lines.contains(StrokeKind::Crease) {
             return None;
         }
-        if is_crease() { chosen(StrokeKind::Crease) } else { chosen(StrokeKind::Mesh) }
+        match (is_crease(), is_border) {
+            (true, false) => chosen(StrokeKind::Crease),
+            (true, true) => Some(StrokeKind::Crease),
+            (false, true) => Some(StrokeKind::Material),
+            (false, false) => chosen(StrokeKind::Mesh),
+        }
     }
 
     fn normal(&self, face: u32) -> DVec3 {
         newell_normal(self.scene.mesh().positions(), self.scene.mesh().face(face))
+    }
+}
+
+/// Where materials and groups meet.
+struct Borders {
+    /// For each face a number that faces of equal group and material share; empty when nobody asks.
+    of_faces: Vec<u32>,
+}
+
+impl Borders {
+    fn new(mesh: &Mesh, lines: LineSelection) -> Self {
+        if !lines.contains(StrokeKind::Material) {
+            return Self { of_faces: Vec::new() };
+        }
+        let mut first = HashMap::new();
+        let numbers: Vec<u32> =
+            (0..).zip(mesh.parts()).map(|(i, part)| *first.entry(part).or_insert(i)).collect();
+        let of_faces = mesh.face_parts().iter().map(|&part| numbers[part as usize]).collect();
+        Self { of_faces }
+    }
+
+    /// Whether the faces along an edge are not all of one group and material.
+    fn lie_between(&self, uses: &[EdgeUse]) -> bool {
+        let part = |along: &EdgeUse| self.of_faces.get(along.face() as usize);
+        uses.windows(2).any(|pair| part(&pair[0]) != part(&pair[1]))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
-use crate::engines::edge::{Engine, Settings, solve};
+use crate::engines::edge::{Engine, Settings, outline, solve};
 use crate::scene::Scene;
 use crate::stats::{Stats, timed};
 use crate::strokes::Drawing;
@@ -44,6 +44,9 @@ pub struct DrawOptions {
     pub crease_deg: f64,
     /// Hidden lines: left out, or kept with their quantitative invisibility.
     pub hidden: HiddenLines,
+    /// Of the hidden lines only those covered at most so often are kept, and each stroke is covered
+    /// equally often all along; `None` keeps all.
+    pub hidden_levels: Option<u32>,
     /// One two-point stroke for each maximal visible interval of each edge; nothing is joined,
     /// dropped or de-duplicated, and contact tolerance and shortest stroke are zero.
     pub exact: bool,
@@ -66,6 +69,7 @@ impl Default for DrawOptions {
             lines: LineSelection::default(),
             crease_deg: DEFAULT_CREASE_DEG,
             hidden: HiddenLines::default(),
+            hidden_levels: None,
             exact: false,
             engine: Engine::default(),
             contact_tolerance: None,
@@ -112,6 +116,9 @@ pub fn draw(
     let (visibility, counts, engine) = timed(&mut stats.seconds.visibility, || {
         solve(&view, options.engine, &options.settings(scene))
     });
+    let outline = timed(&mut stats.seconds.visibility, || {
+        options.lines.has_outline().then(|| outline::find(&view))
+    });
     stats.engine = engine;
     stats.drawn_edges = view.drawn().len();
     stats.counts.candidate_pairs = counts.candidate_pairs;
@@ -123,15 +130,16 @@ pub fn draw(
     timed(&mut stats.seconds.strokes, || {
         let mut chaining = ChainOptions {
             hidden: options.hidden != HiddenLines::None,
+            hidden_levels: options.hidden_levels,
             exact: true,
             apart_by_kind: options.apart_by_kind,
             shortest: 0.0,
         };
         if !options.exact && options.shortest_stroke_mm > 0.0 {
-            let scale = mm_per_unit(&chain(&view, &visibility, &chaining));
+            let scale = mm_per_unit(&chain(&view, &visibility, outline.as_ref(), &chaining));
             chaining.shortest = options.shortest_stroke_mm / scale;
         }
         chaining.exact = options.exact;
-        chain(&view, &visibility, &chaining)
+        chain(&view, &visibility, outline.as_ref(), &chaining)
     })
 }

@@ -222,8 +222,9 @@ impl Page {
 
     /// Maps strokes onto the page, crops them to the margins and gives each to its pen.
     ///
-    /// A stroke is drawn by the pen of its kind if it is visible and there is a rule for that, and
-    /// otherwise by the one of visible or hidden strokes: unless there are rules, visible ones are
+    /// A visible stroke is drawn by the pen of the outline if it is part of that, or else by the pen
+    /// of its kind, and a hidden one by the pen of its level, if there are rules for these; all others
+    /// by the one of visible or hidden strokes: unless there are rules, visible ones are
     /// layer 1 and hidden ones, if drawn, layer 2. Strokes keep their order. O(points + dashes).
     pub fn plot(&self, drawing: &Drawing, options: PlotOptions) -> PlacedPlot {
         let margin = DVec2::splat(self.margin_mm);
@@ -239,7 +240,7 @@ impl Page {
             on_page.clear();
             on_page.extend(stroke.points.iter().map(|&p| self.page_from_image.transform_point2(p)));
             let dashed = stroke.qi > 0 && options.hidden == HiddenLines::Dashed;
-            let lines = holder.lines(stroke.kind, stroke.qi > 0);
+            let lines = holder.lines(&stroke);
             cropped |= window.crop(&mut on_page, |piece| {
                 if dashed {
                     options.dash.for_each_dash(piece, |dash| lines.push(dash.iter().copied()));

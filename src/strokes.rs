@@ -58,6 +58,9 @@ pub struct Stroke<'a> {
     pub kind: StrokeKind,
     /// Quantitative invisibility: how many triangles hide it; 0 is visible.
     pub qi: u32,
+    /// Whether it is part of the outline: nothing but the background is seen beside it. Only told
+    /// where the outline was asked for.
+    pub outline: bool,
     /// Two points or more in image coordinates; a closed stroke ends at its first point.
     pub points: &'a [DVec2],
 }
@@ -74,18 +77,34 @@ pub struct Drawing {
 struct Head {
     kind: StrokeKind,
     qi: u32,
+    outline: bool,
     end: u32,
 }
 
 impl Drawing {
     /// Appends a stroke. Fewer than two points are no stroke and are left out.
     pub fn push(&mut self, kind: StrokeKind, qi: u32, points: impl IntoIterator<Item = DVec2>) {
+        self.push_with(kind, qi, false, points);
+    }
+
+    /// Appends a visible stroke of the outline. Fewer than two points are left out.
+    pub fn push_outline(&mut self, kind: StrokeKind, points: impl IntoIterator<Item = DVec2>) {
+        self.push_with(kind, 0, true, points);
+    }
+
+    fn push_with(
+        &mut self,
+        kind: StrokeKind,
+        qi: u32,
+        outline: bool,
+        points: impl IntoIterator<Item = DVec2>,
+    ) {
         let start = self.points.len();
         self.points.extend(points);
         if self.points.len() < start + 2 {
             self.points.truncate(start);
         } else {
-            self.heads.push(Head { kind, qi, end: self.points.len() as u32 });
+            self.heads.push(Head { kind, qi, outline, end: self.points.len() as u32 });
         }
     }
 
@@ -109,7 +128,7 @@ impl Drawing {
         self.heads.iter().scan(0, |start, head| {
             let points = &self.points[*start..head.end as usize];
             *start = head.end as usize;
-            Some(Stroke { kind: head.kind, qi: head.qi, points })
+            Some(Stroke { kind: head.kind, qi: head.qi, outline: head.outline, points })
         })
     }
 

@@ -17,7 +17,7 @@ use hiddenline::page::{
 use hiddenline::read::ModelFormat;
 use hiddenline::view::{DEFAULT_FOV_DEG, DEFAULT_NEAR};
 use hiddenline::writers::Format;
-use hiddenline::writers::png::Resolution;
+use hiddenline::writers::png::{Marks, Resolution};
 use hiddenline::writers::svg::StrokeElement;
 
 use super::machine::Target;
@@ -135,8 +135,10 @@ struct LineArgs {
     ///
     /// silhouette: between a front and a back face; crease: where faces meet at more than --crease;
     /// boundary: on one face only; nonmanifold: on three faces or more; intersection: where faces
-    /// pierce each other; mesh, all: every edge of the mesh. An edge to which several kinds apply
-    /// is drawn when any of them is named.
+    /// pierce each other; material: where groups or materials change; mesh, all: every edge of the
+    /// mesh. An edge to which several kinds apply is drawn when any of them is named.
+    /// outline: the parts of silhouette, boundary and nonmanifold edges beside which nothing but the
+    /// background is seen; named with other kinds it has a pen of its own, twice as wide.
     #[arg(long, value_name = "KINDS", value_parser = values::lines, verbatim_doc_comment)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
     lines: LineSelection,
@@ -144,9 +146,16 @@ struct LineArgs {
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_CREASE_DEG)]
     crease: f64,
-    /// What becomes of hidden lines; if drawn, they are on their own layer
-    #[arg(long, value_enum, default_value = "none")]
-    hidden: Hidden,
+    /// What becomes of hidden lines; if drawn, they are on their own layer [default: none]
+    #[arg(long, value_enum)]
+    hidden: Option<Hidden>,
+    /// Draw hidden lines that are covered at most N times, each number on its own layer
+    ///
+    /// Every triangle in front of a line counts, so a solid body counts twice: its front and its
+    /// back. The lines are dashed unless --hidden solid is given; --pen hidden1=…, hidden2=… are
+    /// their pens.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=99))]
+    hidden_levels: Option<u32>,
     /// Lengths of dashes and gaps of hidden lines
     #[arg(long, value_name = "DASH,GAP", value_parser = values::dash, default_value = "2.5,1.25")]
     dash: Dash,
@@ -225,6 +234,12 @@ pub(super) struct OutputArgs {
     /// Pixels from left to right of a PNG
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..))]
     png_width: Option<u32>,
+    /// Show in a PNG how the pens go: travel, order, or both with a comma between them
+    ///
+    /// travel: the ways with the pen up, as thin red lines; order: strokes from blue for the first by
+    /// green to red for the last.
+    #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
+    png_show: Vec<PngMark>,
     /// Threads to work with [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -322,6 +337,12 @@ enum FormatName {
     Json,
 }
 
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum PngMark {
+    Travel,
+    Order,
+}
+
 #[derive(Clone, Copy, ValueEnum)]
 enum SvgElement {
     Path,
@@ -348,6 +369,7 @@ pub(super) struct OutputOptions {
     pub(super) format: Format,
     pub(super) svg_element: StrokeElement,
     pub(super) resolution: Resolution,
+    pub(super) marks: Marks,
     pub(super) threads: Option<usize>,
     pub(super) stats: bool,
     pub(super) quiet: bool,
@@ -460,11 +482,13 @@ impl LineArgs {
         DrawOptions {
             lines: self.lines,
             crease_deg: self.crease,
-            hidden: match (self.hidden, self.exact) {
-                (Hidden::None, _) => HiddenLines::None,
-                (Hidden::Dashed, false) => HiddenLines::Dashed,
-                (Hidden::Solid, _) | (Hidden::Dashed, true) => HiddenLines::Solid,
+            hidden: match self.hidden {
+                None | Some(Hidden::None) if self.hidden_levels.is_none() => HiddenLines::None,
+                Some(Hidden::Solid) => HiddenLines::Solid,
+                _ if self.exact => HiddenLines::Solid,
+                _ => HiddenLines::Dashed,
             },
+            hidden_levels: self.hidden_levels,
             exact: self.exact,
             engine: match self.engine {
                 EngineName::Auto => Engine::Auto,
@@ -494,6 +518,10 @@ impl OutputArgs {
             svg_element: match self.svg_element {
                 SvgElement::Path => StrokeElement::Path,
                 SvgElement::Polyline => StrokeElement::Polyline,
+            },
+            marks: Marks {
+                travel: self.png_show.contains(&PngMark::Travel),
+                order: self.png_show.contains(&PngMark::Order),
             },
             resolution: match (self.dpi, self.png_width) {
                 (_, Some(width)) => Resolution::WidthPx(width),

@@ -36,6 +36,9 @@ struct File {
     defaults: Settings,
     #[serde(default)]
     preset: BTreeMap<String, Settings>,
+    /// Machines of one's own.
+    #[serde(default)]
+    machine: BTreeMap<String, toml::Table>,
 }
 
 /// Options that can be set; each is named as on the command line.
@@ -55,7 +58,9 @@ struct Settings {
     fov: Option<f64>,
     up_axis: Option<String>,
     crease: Option<f64>,
+    lines: Option<String>,
     hidden: Option<String>,
+    hidden_levels: Option<u32>,
     dash: Option<String>,
     shortest_stroke: Option<Scalar>,
     format: Option<String>,
@@ -72,7 +77,7 @@ struct Settings {
 }
 
 /// Names in [`Settings`], which the environment can give too.
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 29] = [
     "page",
     "landscape",
     "portrait",
@@ -86,7 +91,9 @@ const NAMES: [&str; 27] = [
     "fov",
     "up-axis",
     "crease",
+    "lines",
     "hidden",
+    "hidden-levels",
     "dash",
     "shortest-stroke",
     "format",
@@ -112,7 +119,7 @@ enum Scalar {
 
 /// Why settings cannot be used.
 #[derive(Debug, Error)]
-enum ConfigError {
+pub(super) enum ConfigError {
     #[error("cannot read {}: {error}", path.display())]
     Read { path: PathBuf, error: std::io::Error },
     #[error("{}: {error}", path.display())]
@@ -160,7 +167,12 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
         let mut used = Vec::new();
         for (name, value) in &layer.options {
             let by_name = |arg: &&clap::Arg| arg.get_long() == Some(name.as_str());
-            // Settings for other commands are none for this one.
+            // Settings for other commands are none for this one: kinds of line are those of models.
+            if name == "lines"
+                && !options.get_arguments().any(|arg| arg.get_long() == Some("crease"))
+            {
+                continue;
+            }
             let Some(arg) = options.get_arguments().find(by_name) else { continue };
             let conflicts = |a: &clap::Arg, b: &clap::Arg| {
                 options.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == b.get_id())
@@ -222,6 +234,30 @@ fn layers(preset: Option<String>) -> Result<Vec<Layer>, ConfigError> {
         layers.push(Layer { options: options(&file.defaults, &origin)?, origin });
     }
     Ok(layers)
+}
+
+/// Machines of the configuration files.
+#[derive(Default)]
+pub(super) struct OwnMachines {
+    /// The one that was asked for, and what to call its place.
+    pub(super) found: Option<(toml::Table, String)>,
+    /// The names of all.
+    pub(super) names: Vec<String>,
+}
+
+/// The machine called `name` in the first file that has one.
+pub(super) fn machine(name: &str) -> Result<OwnMachines, ConfigError> {
+    let mut machines = OwnMachines::default();
+    for path in paths() {
+        let file = read(&path)?.unwrap_or_default();
+        for (own, table) in file.machine {
+            if machines.found.is_none() && own.eq_ignore_ascii_case(name) {
+                machines.found = Some((table, format!("machine {own} in {}", path.display())));
+            }
+            machines.names.push(own);
+        }
+    }
+    Ok(machines)
 }
 
 fn preset_names(files: &[(PathBuf, File)]) -> Vec<&str> {
@@ -314,6 +350,9 @@ pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
         if let Some(file) = read(&path)? {
             for name in file.preset.keys() {
                 writeln!(text, "#   preset {name}")?;
+            }
+            for name in file.machine.keys() {
+                writeln!(text, "#   machine {name}")?;
             }
         }
     }

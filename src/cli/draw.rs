@@ -122,7 +122,7 @@ fn plot_options(job: &Job) -> PlotOptions {
         hidden: job.draw.hidden,
         dash: job.dash,
         title: title(job),
-        pens: job.output.plotting.pens(job.pen_width_mm),
+        pens: job.output.plotting.pens_for(&job.draw, job.pen_width_mm),
         source: source::source(config::arguments()),
     }
 }

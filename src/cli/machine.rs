@@ -6,6 +6,8 @@ use hiddenline::optimize::estimate::Motion;
 use hiddenline::writers::{Format, gcode, hpgl};
 use thiserror::Error;
 
+use super::config;
+
 /// The plotter that HPGL is for, unless set otherwise.
 const DEFAULT_PLOTTER: &str = "hp7475a";
 /// The profile of G-code, unless set otherwise.
@@ -39,6 +41,10 @@ pub(super) enum MachineError {
     #[error("{}: {error}", path.display())]
     Profile { path: PathBuf, error: gcode::Error },
     #[error(transparent)]
+    Settings(#[from] config::ConfigError),
+    #[error("{origin}: {error}")]
+    Own { origin: String, error: Box<dyn std::error::Error + Send + Sync> },
+    #[error(transparent)]
     Plotters(#[from] hpgl::Error),
     #[error(transparent)]
     Gcode(#[from] gcode::Error),
@@ -69,21 +75,27 @@ impl Target {
             Format::Gcode => DEFAULT_GCODE,
             _ => "saxi",
         });
-        let found = match (plotter(wanted), profile(wanted)) {
-            (Some(plotter), _) => {
+        let own = name.map(config::machine).transpose()?.unwrap_or_default();
+        let own_names = own.names;
+        let own =
+            own.found.map(|(table, origin)| own_machine(wanted, table, origin)).transpose()?;
+        let found = match (own, plotter(wanted), profile(wanted)) {
+            (Some(own), ..) => own,
+            (None, Some(plotter), _) => {
                 Self { device: Device::Plotter(plotter.clone()), motion: Motion::default() }
             }
-            (None, Some(name)) => {
+            (None, None, Some(name)) => {
                 let profile = gcode::Profile::named(name)?;
                 let motion = profile.motion.clone();
                 Self { device: Device::Gcode(Box::new(profile)), motion }
             }
-            (None, None) => match Motion::named(&wanted.to_ascii_lowercase()) {
+            (None, None, None) => match Motion::named(&wanted.to_ascii_lowercase()) {
                 Some(motion) => Self { device: Device::Any, motion },
                 None => {
                     let plotters = plotters.iter().map(|p| p.name.as_str());
                     let known = Motion::NAMES.into_iter().chain(plotters);
                     let known = known.chain(profiles.iter().map(String::as_str));
+                    let known = known.chain(own_names.iter().map(String::as_str));
                     return Err(MachineError::Unknown {
                         suggestion: suggestion(wanted, known),
                         name: wanted.to_owned(),
@@ -107,6 +119,43 @@ impl Target {
             _ => Ok(Self { device: Device::Any, ..found }),
         }
     }
+}
+
+/// A machine of a configuration file: a plotter where papers are listed, a profile of G-code where
+/// it has templates or is `like` a known one, and otherwise only how it moves.
+fn own_machine(name: &str, mut table: toml::Table, origin: String) -> Result<Target, MachineError> {
+    let failed = |error: Box<dyn std::error::Error + Send + Sync>| MachineError::Own {
+        origin: origin.clone(),
+        error,
+    };
+    if table.contains_key("paper") {
+        let motion = match table.remove("motion") {
+            Some(motion) => motion.try_into().map_err(|error| failed(error.into()))?,
+            None => Motion::default(),
+        };
+        table.entry("name").or_insert_with(|| name.into());
+        table.entry("title").or_insert_with(|| name.into());
+        let plotter = table.try_into().map_err(|error| failed(error.into()))?;
+        return Ok(Target { device: Device::Plotter(plotter), motion });
+    }
+    if let Some(like) = table.remove("like") {
+        let like = like.as_str().unwrap_or_default();
+        let known = gcode::Profile::table(like)?;
+        let Some(mut known) = known else {
+            let names = gcode::Profile::names()?;
+            let suggestion = suggestion(like, names.iter().map(String::as_str));
+            return Err(failed(format!("there is no profile called `{like}`{suggestion}").into()));
+        };
+        known.extend(table);
+        table = known;
+    } else if let (1, Some(motion)) = (table.len(), table.get("motion")) {
+        let motion = motion.clone().try_into().map_err(|error| failed(error.into()))?;
+        return Ok(Target { device: Device::Any, motion });
+    }
+    let text = toml::to_string(&table).map_err(|error| failed(error.into()))?;
+    let profile = gcode::Profile::from_toml(&text).map_err(|error| failed(error.into()))?;
+    let motion = profile.motion.clone();
+    Ok(Target { device: Device::Gcode(Box::new(profile)), motion })
 }
 
 fn read_profile(path: &Path) -> Result<gcode::Profile, MachineError> {

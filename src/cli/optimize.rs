@@ -105,7 +105,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         for line in plot.layers.iter().flat_map(|layer| layer.lines.iter()) {
             lines.push(line.iter().copied());
         }
-        let name = rule.drawn.name().to_owned();
+        let name = rule.drawn.name().into_owned();
         plot.layers =
             vec![hiddenline::plot::Layer { number: rule.number, name, pen: rule.pen, lines }];
     }

@@ -102,7 +102,7 @@ impl Run<'_> {
             (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(&written, profile, out)?),
             (Format::Pdf, _) => Ok(pdf::write(&written, out)?),
             (Format::Dxf, _) => Ok(dxf::write(&written, out)?),
-            (Format::Png, _) => png::write(&written, output.resolution, out),
+            (Format::Png, _) => png::write_marked(&written, output.resolution, output.marks, out),
             _ => Ok(svg::write(&written, output.svg_element, out)?),
         })
     }

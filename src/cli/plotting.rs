@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use hiddenline::draw::DrawOptions;
 use hiddenline::optimize::{Effort, Options, estimate, optimize, split_by_distance};
 use hiddenline::page::{Drawn, PenRule};
 use hiddenline::plot::{Pen, Plot};
@@ -15,6 +16,9 @@ use super::values::{self, PenText};
 /// Colors of pens of which none is said, by number.
 const PALETTE: [&str; 8] =
     ["#000000", "#808080", "#c00000", "#0000c0", "#008000", "#c06000", "#8000a0", "#0090a0"];
+
+/// Nearly black: programs that tell pens by color take it for another one than the visible lines'.
+const OUTLINE_COLOR: &str = "#101010";
 
 #[derive(Args)]
 #[command(next_help_heading = "Pens and plotter")]
@@ -44,8 +48,9 @@ pub(super) struct PlotArgs {
     split_distance: Option<f64>,
     /// What draws: it decides HPGL and G-code, and the estimate of the time
     ///
-    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan. G-code: grbl-servo (default),
-    /// grbl-z, grbl-laser, marlin. For the estimate also saxi (default), axidraw, grbl.
+    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan, dmp-161, dxy, sketchmate.
+    /// G-code: grbl-servo (default), grbl-z, grbl-laser, marlin. For the estimate also saxi
+    /// (default), axidraw, grbl. A configuration file can have more: [machine.NAME].
     #[arg(long, value_name = "NAME", conflicts_with = "gcode_profile")]
     machine: Option<String>,
     /// Templates of a G-code machine of your own, as TOML
@@ -53,7 +58,8 @@ pub(super) struct PlotArgs {
     gcode_profile: Option<PathBuf>,
     /// The pen for visible or hidden lines, or for one kind of them: WHAT=NUMBER[:WIDTH[:COLOR]]
     ///
-    /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer.
+    /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer. WHAT is
+    /// visible, hidden, outline, hidden1, hidden2 … for lines covered so often, or a kind of line.
     #[arg(long = "pen", value_name = "PEN", value_parser = values::pen)]
     pens: Vec<PenText>,
 }
@@ -109,9 +115,33 @@ pub(super) struct Finished {
 }
 
 impl Plotting {
-    /// Whether kinds of line have pens of their own.
+    /// Whether kinds of line or hidden levels have pens of their own.
     pub(super) fn has_pens_by_kind(&self) -> bool {
-        self.pens.iter().any(|pen| matches!(pen.drawn, Drawn::Kind(_)))
+        let by_kind = |drawn| matches!(drawn, Drawn::Kind(_) | Drawn::HiddenLevel(_));
+        self.pens.iter().any(|pen| by_kind(pen.drawn))
+    }
+
+    /// The pens of a drawing; also one for the outline, when other lines are drawn too, and one for
+    /// each hidden level, unless there are rules for them.
+    pub(super) fn pens_for(&self, drawing: &DrawOptions, width_mm: f64) -> Vec<PenRule> {
+        let mut rules = self.pens(width_mm);
+        let mut add = |drawn, width_mm, color: String| {
+            if rules.iter().all(|rule| rule.drawn != drawn) {
+                // The first number is left for the visible lines.
+                let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
+                let number = (2..).find(is_free).unwrap_or(2);
+                rules.push(PenRule { drawn, number, pen: Pen { width_mm, color } });
+            }
+        };
+        if drawing.lines.has_outline() && drawing.lines.has_more_than_outline() {
+            add(Drawn::Outline, 2.0 * width_mm, OUTLINE_COLOR.into());
+        }
+        let levels = drawing.hidden_levels.unwrap_or(0);
+        for level in 1..=levels {
+            let gray = 0x80 + (level - 1) * 0x60 / levels;
+            add(Drawn::HiddenLevel(level), width_mm, format!("#{gray:02x}{gray:02x}{gray:02x}"));
+        }
+        rules
     }
 
     /// Whether strokes are joined and ordered.

@@ -91,11 +91,13 @@ pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
             "boundary" => lines.with(StrokeKind::Boundary),
             "nonmanifold" => lines.with(StrokeKind::Nonmanifold),
             "intersection" => lines.with(StrokeKind::Intersection),
+            "material" => lines.with(StrokeKind::Material),
             "mesh" => lines.with(StrokeKind::Mesh),
+            "outline" => lines.with_outline(),
             other => {
                 return Err(format!(
                     "`{other}` is no kind of line; there are silhouette, crease, boundary, \
-                     nonmanifold, intersection, mesh, and all"
+                     nonmanifold, intersection, material, mesh, outline, and all"
                 ));
             }
         })
@@ -160,9 +162,17 @@ fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
         StrokeKind::Text,
         StrokeKind::Hatch,
     ];
-    let all = || [Drawn::Visible, Drawn::Hidden].into_iter().chain(KINDS.map(Drawn::Kind));
+    let level = name.strip_prefix("hidden").and_then(|level| level.parse().ok());
+    if let Some(level @ 1..=99) = level {
+        return Ok(Drawn::HiddenLevel(level));
+    }
+    let all = || {
+        let first = [Drawn::Visible, Drawn::Hidden, Drawn::HiddenLevel(1), Drawn::Outline];
+        first.into_iter().chain(KINDS.map(Drawn::Kind))
+    };
     all().find(|drawn| drawn.name() == name).ok_or_else(|| {
-        let names = all().map(Drawn::name);
+        let names: Vec<_> = all().map(Drawn::name).collect();
+        let names = names.iter().map(AsRef::as_ref);
         format!("no pen draws `{name}`{}", super::machine::suggestion(name, names))
     })
 }

@@ -43,7 +43,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance_mm: 0.02, max_segments: 50_000_000, max_elements: 50_000_000 }
+        Self { tolerance_mm: 0.02, max_segments: 50_000_000, max_elements: 20_000_000 }
     }
 }
 

@@ -41,9 +41,10 @@ mod split;
 pub use split::split_by_distance;
 
 /// Joints of strokes in a file are this close, unless set otherwise: coordinates with three decimals
-/// put a point that two strokes share up to two micrometers apart, along an axis. The last nanometer
-/// is for binary numbers, which only come near to decimal ones. Ink moves by half of it at most.
-pub const JOIN_TOLERANCE_MM: f64 = 0.002_001;
+/// put a point that two strokes share up to two micrometers apart, along an axis. The last picometer
+/// is for binary numbers, which only come near to decimal ones. A joint is the middle of the box of
+/// its points, whose diagonal is no longer than this: so ink moves by half of it, a micrometer.
+pub const JOIN_TOLERANCE_MM: f64 = 0.002_000_000_001;
 
 /// Ink this close to other ink lies on it in drawings, unless set otherwise: half of the last digit
 /// that is written.

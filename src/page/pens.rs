@@ -1,8 +1,10 @@
 //! Which pen draws what.
 
 use crate::draw::HiddenLines;
+use std::borrow::Cow;
+
 use crate::plot::{Layer, Pen, Polylines};
-use crate::strokes::StrokeKind;
+use crate::strokes::{Stroke, StrokeKind};
 
 use super::PlotOptions;
 
@@ -11,20 +13,31 @@ use super::PlotOptions;
 pub enum Drawn {
     /// Visible strokes of all kinds that have no rule of their own.
     Visible,
-    /// Hidden strokes.
+    /// Hidden strokes of all levels that have no rule of their own.
     Hidden,
+    /// Hidden strokes that are covered so often.
+    HiddenLevel(u32),
+    /// Strokes of the outline.
+    Outline,
     /// Visible strokes of one kind.
     Kind(StrokeKind),
 }
 
 impl Drawn {
     /// The name on the command line and of the layer.
-    pub fn name(self) -> &'static str {
+    pub fn name(self) -> Cow<'static, str> {
         match self {
-            Self::Visible => "visible",
-            Self::Hidden => "hidden",
-            Self::Kind(kind) => kind.name(),
+            Self::Visible => "visible".into(),
+            Self::Hidden => "hidden".into(),
+            Self::HiddenLevel(level) => format!("hidden{level}").into(),
+            Self::Outline => "outline".into(),
+            Self::Kind(kind) => kind.name().into(),
         }
+    }
+
+    /// Whether it is about hidden strokes.
+    pub fn is_hidden(self) -> bool {
+        matches!(self, Self::Hidden | Self::HiddenLevel(_))
     }
 }
 
@@ -61,7 +74,7 @@ impl Holder {
             hidden: 0,
         };
         let with_hidden = options.hidden != HiddenLines::None;
-        for rule in options.pens.iter().filter(|r| with_hidden || r.drawn != Drawn::Hidden) {
+        for rule in options.pens.iter().filter(|r| with_hidden || !r.drawn.is_hidden()) {
             let layer = match holder.layers.iter().position(|l| l.number == rule.number) {
                 Some(layer) => layer,
                 None => holder.add(rule.drawn, rule.number, rule.pen.clone(), true),
@@ -91,19 +104,20 @@ impl Holder {
     }
 
     fn add(&mut self, drawn: Drawn, number: u32, pen: Pen, fixed: bool) -> usize {
-        let name = drawn.name().to_owned();
+        let name = drawn.name().into_owned();
         self.layers.push(Layer { number, name, pen, lines: Polylines::default() });
         self.fixed.push(fixed);
         self.layers.len() - 1
     }
 
-    /// Where strokes of a kind go, if they go anywhere.
-    pub(super) fn lines(&mut self, kind: StrokeKind, is_hidden: bool) -> &mut Polylines {
-        let layer = if is_hidden {
-            self.hidden
+    /// Where a stroke goes, if it goes anywhere.
+    pub(super) fn lines(&mut self, stroke: &Stroke) -> &mut Polylines {
+        let ruled = |drawn| self.rules.iter().rev().find(|rule| rule.0 == drawn).map(|rule| rule.1);
+        let layer = if stroke.qi > 0 {
+            ruled(Drawn::HiddenLevel(stroke.qi)).unwrap_or(self.hidden)
         } else {
-            let ruled = self.rules.iter().rev().find(|rule| rule.0 == Drawn::Kind(kind));
-            ruled.map_or(self.visible, |rule| rule.1)
+            let outline = if stroke.outline { ruled(Drawn::Outline) } else { None };
+            outline.or_else(|| ruled(Drawn::Kind(stroke.kind))).unwrap_or(self.visible)
         };
         &mut self.layers[layer].lines
     }

@@ -133,6 +133,15 @@ impl Profile {
         Ok(profiles.into_keys().collect())
     }
 
+    /// A known profile as TOML, to make one's own from; `None` when there is none of that name.
+    ///
+    /// # Errors
+    /// None but for a defect in the profiles themselves.
+    pub fn table(name: &str) -> Result<Option<toml::Table>, Error> {
+        let mut all: toml::Table = toml::from_str(include_str!("gcode_profiles.toml"))?;
+        Ok(all.remove(name).and_then(|profile| profile.as_table().cloned()))
+    }
+
     /// Reads one profile from TOML.
     ///
     /// # Errors

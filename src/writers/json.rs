@@ -51,6 +51,8 @@ struct StrokeRecord<'a> {
     visible: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     qi: Option<u32>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    outline: bool,
     #[serde(serialize_with = "serialize_points")]
     points: &'a [glam::DVec2],
 }
@@ -96,7 +98,8 @@ impl<'a> From<Stroke<'a>> for StrokeRecord<'a> {
     fn from(stroke: Stroke<'a>) -> Self {
         let visible = stroke.qi == 0;
         let qi = (!visible).then_some(stroke.qi);
-        Self { kind: stroke.kind.name(), visible, qi, points: stroke.points }
+        let (kind, outline) = (stroke.kind.name(), stroke.outline);
+        Self { kind, visible, qi, outline, points: stroke.points }
     }
 }
 

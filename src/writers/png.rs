@@ -10,7 +10,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, PixelDimensions, Unit};
 use thiserror::Error;
 use tiny_skia::{Color, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
 
-use crate::plot::{Pen, Plot};
+use crate::plot::Plot;
 
 /// Pixels per inch, unless set otherwise.
 pub const DEFAULT_DPI: f64 = 150.0;
@@ -34,6 +34,25 @@ impl Default for Resolution {
         Self::Dpi(DEFAULT_DPI)
     }
 }
+
+/// What a picture shows of how the pens go.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Marks {
+    /// The ways between strokes with the pen up, as thin red lines.
+    pub travel: bool,
+    /// The order of the strokes by color, from blue for the first by green to red for the last; the
+    /// pens' own colors are then not seen.
+    pub order: bool,
+}
+
+/// Width of the lines that stand for ways with the pen up, in millimetres.
+const TRAVEL_WIDTH_MM: f64 = 0.15;
+
+/// Color of these lines.
+const TRAVEL_COLOR: [u8; 3] = [0xe0, 0x40, 0x40];
+
+/// Colors that the order of strokes is told by.
+const ORDER_COLORS: usize = 256;
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -64,6 +83,19 @@ pub enum PngError {
 /// # Errors
 /// See [`PngError`].
 pub fn write(plot: &Plot, resolution: Resolution, out: &mut dyn io::Write) -> Result<(), PngError> {
+    write_marked(plot, resolution, Marks::default(), out)
+}
+
+/// Writes a picture of `plot` that shows how the pens go, too. O(pixels + strokes).
+///
+/// # Errors
+/// See [`PngError`].
+pub fn write_marked(
+    plot: &Plot,
+    resolution: Resolution,
+    marks: Marks,
+    out: &mut dyn io::Write,
+) -> Result<(), PngError> {
     let px_per_mm = match resolution {
         Resolution::Dpi(dpi) => dpi / MM_PER_INCH,
         Resolution::WidthPx(width) => f64::from(width) / plot.width_mm,
@@ -76,18 +108,50 @@ pub fn write(plot: &Plot, resolution: Resolution, out: &mut dyn io::Write) -> Re
     }
     let mut pixmap = Pixmap::new(width_px as u32, height_px as u32).ok_or_else(too_large)?;
     pixmap.fill(Color::WHITE);
-    let mut gray = true;
+    let mut gray = !marks.travel && !marks.order;
+    let n_strokes: usize = plot.layers.iter().map(|layer| layer.lines.len()).sum();
+    let mut n_drawn = 0;
     for layer in &plot.layers {
         let color = parse_color(&layer.pen.color)?;
         gray &= color[0] == color[1] && color[1] == color[2];
-        draw(layer.lines.iter(), &layer.pen, color, px_per_mm, &mut pixmap);
+        let width = layer.pen.width_mm;
+        if marks.order {
+            let strokes: Vec<&[DVec2]> = layer.lines.iter().collect();
+            let tone = |i: usize| (n_drawn + i) * ORDER_COLORS / n_strokes.max(1);
+            let mut start = 0;
+            while start < strokes.len() {
+                let n = (start..strokes.len()).take_while(|&i| tone(i) == tone(start)).count();
+                let run = strokes[start..start + n].iter().copied();
+                draw(run, width, order_color(tone(start)), px_per_mm, &mut pixmap);
+                start += n;
+            }
+        } else {
+            draw(layer.lines.iter(), width, color, px_per_mm, &mut pixmap);
+        }
+        n_drawn += layer.lines.len();
+    }
+    if marks.travel {
+        for layer in &plot.layers {
+            let (from, to) = (layer.lines.iter(), layer.lines.iter().skip(1));
+            let ways: Vec<[DVec2; 2]> =
+                from.zip(to).filter_map(|(a, b)| Some([*a.last()?, *b.first()?])).collect();
+            let ways = ways.iter().map(<[DVec2; 2]>::as_slice);
+            draw(ways, TRAVEL_WIDTH_MM, TRAVEL_COLOR, px_per_mm, &mut pixmap);
+        }
     }
     encode(&pixmap, gray, px_per_mm, out)
 }
 
+/// The color of a tone below [`ORDER_COLORS`]: blue, green, red, with what lies between.
+fn order_color(tone: usize) -> [u8; 3] {
+    let part = 2.0 * tone as f64 / (ORDER_COLORS - 1) as f64;
+    let of = |near: f64| (208.0 * (1.0 - (part - near).abs()).clamp(0.0, 1.0)) as u8;
+    [of(2.0), of(1.0), of(0.0)]
+}
+
 fn draw<'a>(
     lines: impl Iterator<Item = &'a [DVec2]>,
-    pen: &Pen,
+    width_mm: f64,
     [r, g, b]: [u8; 3],
     px_per_mm: f64,
     pixmap: &mut Pixmap,
@@ -95,7 +159,7 @@ fn draw<'a>(
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color_rgba8(r, g, b, 255);
     let stroke = tiny_skia::Stroke {
-        width: (pen.width_mm * px_per_mm) as f32,
+        width: (width_mm * px_per_mm) as f32,
         line_cap: LineCap::Round,
         line_join: LineJoin::Round,
         ..tiny_skia::Stroke::default()

@@ -91,7 +91,7 @@ pub(crate) fn appel(scene: &TestScene) -> Option<Vec<EngineEdge>> {
 }
 
 /// Compares `n` random scenes and reports the smallest that differs.
-fn assert_truth(
+pub(crate) fn assert_truth(
     first: u64,
     n: u64,
     check: impl Fn(&TestScene, &[EdgeTruth]) -> Result<(), String>,

@@ -77,6 +77,9 @@ pub(crate) struct EdgeTruth {
     pub image_is_point: bool,
     /// In order of t and without gaps; empty when nothing is kept or the image is a point.
     pub pieces: Vec<Piece>,
+    /// The same for triangles at any depth, the edge's own too: where this is 0 nothing but the
+    /// background is seen on one side of the edge.
+    pub image_pieces: Vec<Piece>,
 }
 
 impl EdgeTruth {
@@ -351,13 +354,24 @@ impl World {
         if tolerance > 0.0 && behind.iter().all(|b| self.is_within(b, cover, tolerance)) {
             return None;
         }
-        let (mut t0, mut t1) = (kept.0.clone(), kept.1.clone());
         // Strictly behind the plane somewhere.
         if behind.iter().all(|b| sign(b) <= 0) {
             return None;
         }
+        self.image_part(cover, ends, kept, vec![behind])
+    }
+
+    /// Where the edge's image lies in that of `cover` and the conditions, given by their values at
+    /// both ends, hold.
+    fn image_part(
+        &self,
+        cover: &Cover,
+        [p, q]: [&Point; 2],
+        kept: (&Ratio, &Ratio),
+        mut conditions: Vec<[Int; 2]>,
+    ) -> Option<Hidden> {
+        let (mut t0, mut t1) = (kept.0.clone(), kept.1.clone());
         let (mut left, mut right) = (true, true);
-        let mut conditions = vec![behind];
         for border in &cover.borders {
             let inside = [value(&border.plane, p), value(&border.plane, q)];
             match (sign(&inside[0]), sign(&inside[1])) {
@@ -531,21 +545,24 @@ pub(crate) fn truth(
             }
             let image_is_point = world.image_is_point(a, b);
             let (p, q) = (world.point(a), world.point(b));
-            let pieces = match world.kept_range(&p, &q) {
+            let (pieces, image_pieces) = match world.kept_range(&p, &q) {
                 Some(kept) if !image_is_point => {
                     let edge_box =
                         if settings.reject_by_boxes { world.image_box(&[a, b]) } else { None };
-                    let hidden: Vec<Hidden> = covers
-                        .iter()
-                        .filter(|c| !are_apart(edge_box, c.image_box))
+                    let near = || covers.iter().filter(|c| !are_apart(edge_box, c.image_box));
+                    let range = (&kept.0, &kept.1);
+                    let in_image: Vec<Hidden> = near()
+                        .filter_map(|c| world.image_part(c, [&p, &q], range, Vec::new()))
+                        .collect();
+                    let hidden: Vec<Hidden> = near()
                         .filter_map(|c| {
                             let tolerance = settings.contact_tolerance;
-                            world.hidden_part(c, [&p, &q], (&kept.0, &kept.1), tolerance)
+                            world.hidden_part(c, [&p, &q], range, tolerance)
                         })
                         .collect();
-                    pieces(kept, &hidden)
+                    (pieces(kept.clone(), &hidden), pieces(kept, &in_image))
                 }
-                _ => Vec::new(),
+                _ => (Vec::new(), Vec::new()),
             };
             EdgeTruth {
                 ends: [world.positions[a], world.positions[b]],
@@ -554,6 +571,7 @@ pub(crate) fn truth(
                 angle: between,
                 image_is_point,
                 pieces,
+                image_pieces,
             }
         })
         .collect();

@@ -7,9 +7,14 @@ use std::time::Duration;
 
 use glam::{DVec2, dvec2};
 use hiddenline::optimize::estimate::{Motion, estimate_lines};
-use hiddenline::optimize::{JOIN_TOLERANCE_MM, Options, optimize};
+use hiddenline::optimize::{
+    Effort, Graph, JOIN_TOLERANCE_MM, Joints, Options, optimize, optimize_lines, order,
+    remove_overlaps,
+};
 use hiddenline::plot::Polylines;
 use tempfile::TempDir;
+
+use crate::optimize::paired_by_chance;
 
 /// A cube of two units around the origin, as OBJ.
 const CUBE: &str = "\
@@ -219,6 +224,78 @@ fn typed_settings_go_before_the_environment_and_that_before_files() {
 }
 
 #[test]
+fn a_configuration_file_can_have_machines() {
+    let (_keep, folder) = with_models();
+    let machines = "\
+[preset.shop]\nmachine = 'mine'
+[machine.mine]\nlike = 'grbl-servo'\npen_down = \"M3 S300\\n\"\ndecimals = 1
+[machine.old]\nunit = 0.025\npens = 2
+[[machine.old.paper]]\nnames = ['a5']\nsize = [210, 148]\nx = [0, 8000]\ny = [0, 5600]\norigin = [5, 143]
+park = [0, 0]
+[machine.slow.motion]\ndown_speed = 1\ndown_acceleration = 200\ncorner = 0.1\nup_speed = 200
+up_acceleration = 400\nraise = 0.1\nlower = 0.1
+[machine.broken]\nlike = 'grbl-servo'\nline = \"G1 {nonsense}\\n\"
+[machine.stray]\nlike = 'gerbil'\n";
+    fs::write(folder.join("hiddenline.toml"), machines).unwrap();
+    let draw = |more: &[&str]| hiddenline(&folder, &[&["draw", "cube.obj"], more].concat());
+    let written = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    assert!(draw(&["--preset", "shop", "-o", "a.nc"]).status.success());
+    assert!(written("a.nc").contains("M3 S300\n") && written("a.nc").contains("G4 P0.3"));
+    let old = draw(&["--machine", "OLD", "--page", "a5", "-o", "a.plt"]);
+    assert!(old.status.success(), "{}", text(&old.stderr));
+    assert!(written("a.plt").contains("PU0,0;SP0"), "{}", written("a.plt"));
+    assert_fails(&draw(&["--machine", "old", "-o", "b.plt"]), 1, "it takes a5");
+    // What limits a line of 1 mm/s is its length: 6 edges of a cube on A4 take a quarter of an hour.
+    let minutes = |machine: &str| {
+        let output = draw(&["--machine", machine, "--stats", "-o", "a.svg"]);
+        let stderr = text(&output.stderr);
+        let stats: serde_json::Value =
+            serde_json::from_str(stderr.lines().last().unwrap()).unwrap();
+        stats["plot"]["after"]["minutes"].as_f64().unwrap()
+    };
+    assert!(minutes("slow") > 10.0 * minutes("saxi"));
+    let broken = draw(&["--machine", "broken", "-o", "a.nc"]);
+    assert_fails(
+        &broken,
+        1,
+        "machine broken in hiddenline.toml: template line: unknown placeholder",
+    );
+    assert_fails(&draw(&["--machine", "stray", "-o", "a.nc"]), 1, "did you mean grbl");
+    assert_fails(&draw(&["--machine", "mime", "-o", "a.nc"]), 1, "did you mean mine");
+    let shown = text(&hiddenline(&folder, &["config", "show"]).stdout);
+    assert!(shown.contains("#   machine mine"), "{shown}");
+}
+
+/// How many pixels of a PNG on a page of 210 by 297 mm `is_it`, by red, green and blue.
+fn pixels(bytes: &[u8], is_it: impl Fn(&[u8]) -> bool) -> usize {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut data = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut data).unwrap();
+    assert_eq!(info.color_type, png::ColorType::Rgb);
+    data.chunks_exact(3).filter(|pixel| is_it(pixel)).count()
+}
+
+#[test]
+fn a_picture_can_show_how_the_pen_goes() {
+    let (_keep, folder) = with_models();
+    let show = |what: &str| {
+        let arguments =
+            ["optimize", "lines.svg", "--format", "png", "--dpi", "100", "--png-show", what];
+        hiddenline(&folder, &arguments).stdout
+    };
+    let is_red = |p: &[u8]| p[0] > 180 && p[1] < 110 && p[2] < 110;
+    let is_blue = |p: &[u8]| p[2] > 180 && p[0] < 90 && p[1] < 90;
+    // From the end of one of the two strokes to the beginning of the other: 100 mm or more.
+    let travel = show("travel");
+    assert!(pixels(&travel, is_red) + pixels(&travel, |p| p[0] > 220 && p[1] < 200) > 300);
+    assert_eq!(pixels(&travel, is_blue), 0);
+    let order = show("order");
+    assert!(pixels(&order, is_blue) > 100, "{}", pixels(&order, is_blue));
+    assert!(pixels(&order, |p| p[1] > 150 && p[0] < 90 && p[2] < 90) > 100);
+    assert_ne!(show("travel,order"), order);
+}
+
+#[test]
 fn strict_takes_warnings_for_errors() {
     let (_keep, folder) = with_models();
     let away = ["draw", "cube.obj", "--eye", "9,0,0", "--target", "20,0,0", "--strict"];
@@ -234,14 +311,14 @@ fn colors_come_only_when_asked_for() {
     assert!(!text(&plain.stderr).contains("\u{1b}["));
 }
 
-/// The drawing of `gen_strokes.py wire 2000`, where it can be made.
-fn wire_2000() -> Option<Polylines> {
+/// The drawing of `gen_strokes.py wire N`, where it can be made.
+fn wire(n: &str) -> Option<Polylines> {
     let generator =
         concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models/generators/gen_strokes.py");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("wire.svg");
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
-    let made = Command::new(python).arg(generator).args(["wire", "2000"]).arg(&file).output();
+    let made = Command::new(python).arg(generator).args(["wire", n]).arg(&file).output();
     if !made.is_ok_and(|output| output.status.success()) {
         eprintln!("skipped: gen_strokes.py needs ../shared/models and Python with numpy (PYTHON)");
         return None;
@@ -253,7 +330,7 @@ fn wire_2000() -> Option<Polylines> {
 
 #[test]
 fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
-    let Some(lines) = wire_2000() else { return };
+    let Some(lines) = wire("2000") else { return };
     let layer = hiddenline::plot::Layer {
         number: 1,
         name: "lines".into(),
@@ -270,13 +347,27 @@ fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
 }
 
 #[test]
+fn a_wire_drawing_takes_much_less_time_than_strokes_paired_by_chance() {
+    let Some(lines) = wire("20000") else { return };
+    let ours = optimize_lines(&lines, None, &Options::default()).lines;
+    assert_eq!(ours.len(), 454);
+    let mut graph = Graph::new(&lines, Joints::Near(JOIN_TOLERANCE_MM));
+    remove_overlaps(&mut graph, 0.0);
+    let arbitrary = paired_by_chance(&graph.positions, &graph.edges);
+    let seconds = |lines: &Polylines| estimate_lines(lines, &Motion::SAXI).seconds;
+    let ratio = seconds(&ours) / seconds(&order(&arbitrary, Effort::Fast).lines);
+    eprintln!("{ratio:.3} of the time of {} strokes paired by chance", arbitrary.len());
+    assert!(ratio <= 0.65, "{ratio}");
+}
+
+#[test]
 fn joints_move_by_half_of_the_tolerance_at_most() {
     // A stroke's end and another's beginning, two micrometers apart as three decimals have them.
     let lines =
         [[dvec2(10.0, 10.0), dvec2(20.001, 10.0)], [dvec2(20.003, 10.0), dvec2(20.0, 30.0)]];
     let mut polylines = Polylines::default();
     lines.iter().for_each(|line| polylines.push(line.iter().copied()));
-    let joined = hiddenline::optimize::optimize_lines(&polylines, None, &Options::default()).lines;
+    let joined = optimize_lines(&polylines, None, &Options::default()).lines;
     assert_eq!(joined.len(), 1);
     let corner = joined.iter().next().unwrap()[1];
     let farthest = |p: DVec2| p.distance(corner);

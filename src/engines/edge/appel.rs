@@ -26,8 +26,9 @@
 //! * each of an edge's two sides has its own number (module `trace`), and a side is a path that meets
 //!   no vertex and runs along no edge, so that coincidences in the image are no special case;
 //! * nothing is rounded: crossing, depth and order are signs of [`crate::predicates`], and the two
-//!   ways by which a number can reach a vertex must give the same. A difference would be a fault of
-//!   the program; it is counted, and [`roberts`] does the edges that it concerns.
+//!   ways by which a number can reach a vertex must give the same; on a closed surface some sight
+//!   lines must meet an even number of triangles as well (module `parity`). A difference would be a
+//!   fault of the program; it is counted, and [`roberts`] does the edges that it concerns.
 //!
 //! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
 //! [`Settings::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
@@ -49,6 +50,7 @@ mod box_join;
 mod cutting;
 mod doubled;
 mod near;
+mod parity;
 mod propagate;
 mod start;
 mod trace;
@@ -62,7 +64,7 @@ use super::{Counts, Settings};
 use crate::classify::ViewedScene;
 use crate::predicates::CutPlane;
 use crate::visibility::Visibility;
-use cutting::{Sides, Stars};
+use cutting::Stars;
 use doubled::Partners;
 use near::{NearTriangles, Places};
 use propagate::{Base, Levels};
@@ -70,6 +72,8 @@ use rayon::prelude::*;
 use start::{is_plain, layers_beyond, local_layers};
 use std::sync::Mutex;
 use trace::{Change, Surroundings, Trace, Tracer};
+
+pub(super) use cutting::Sides;
 
 /// How many segments make one piece of parallel work.
 const CHUNK: usize = 512;
@@ -125,6 +129,12 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
 
     let mut starts = Starts::new(view, &segments, &traced);
     starts.ask_sight_lines(view, &rounding, &places, &segments, &traced);
+    let n_odd = parity::count_odd(view, &sides, &segments, &starts.layers);
+    if n_odd > 0 {
+        // Which of the numbers is wrong is not known: Roberts does them all.
+        starts.n_failures += n_odd;
+        starts.layers.fill(None);
+    }
     let partners =
         if settings.find_doubled { Partners::new(view, &segments) } else { Partners::default() };
     let drawing = Drawing { view, settings, sides: &sides, partners: &partners, starts: &starts };

@@ -122,17 +122,7 @@ pub(super) fn shadow(
     if corners.contains(&ends[0]) && corners.contains(&ends[1]) {
         return None;
     }
-    let near_signs = if view.near_plane_cuts() {
-        let signs = corners.map(|corner| view.sight().near_distance(corner).1);
-        // A triangle in the near plane itself is kept; one that only touches it leaves no area.
-        if !signs.contains(&Sign::Positive) && signs != [Sign::Zero; 3] {
-            return None;
-        }
-        signs
-    } else {
-        [Sign::Positive; 3]
-    };
-
+    let near_signs = near_signs(view, corners)?;
     let sight = view.sight();
     let mut range = Range { from: segment.from, to: segment.to };
     // Depth first: it rules out all that lies behind.
@@ -151,6 +141,57 @@ pub(super) fn shadow(
         }
     }
 
+    let (cover, border) = within_image(view, segment, triangle, near_signs, range)?;
+    if in_plane {
+        // A segment in the triangle's plane shares its image with it only along a border.
+        return border.map(|border| Shadow::OnBorder(cover, border));
+    }
+    if contact_tolerance > 0.0 && sight.in_contact(corners, ends, contact_tolerance) {
+        return None;
+    }
+    Some(match border {
+        Some(border) if find_doubled => Shadow::AlongBorder(cover, border),
+        _ => Shadow::Covers(cover),
+    })
+}
+
+/// The part of `segment` whose image lies in that of `triangle`, whichever of them is in front.
+///
+/// The triangle may have the segment as one of its sides; then it takes the whole of one side of
+/// it. Exact.
+pub(super) fn image_cover(view: &ViewedScene, segment: &Segment, triangle: u32) -> Option<Cover> {
+    if view.triangle_turns()[triangle as usize] == Sign::Zero {
+        return None;
+    }
+    let near_signs = near_signs(view, view.scene().triangles()[triangle as usize])?;
+    let range = Range { from: segment.from, to: segment.to };
+    within_image(view, segment, triangle, near_signs, range).map(|(cover, _)| cover)
+}
+
+/// On which side of the near plane the corners of a triangle are; `None` when nothing is kept.
+#[inline]
+fn near_signs(view: &ViewedScene, corners: [u32; 3]) -> Option<[Sign; 3]> {
+    if !view.near_plane_cuts() {
+        return Some([Sign::Positive; 3]);
+    }
+    let signs = corners.map(|corner| view.sight().near_distance(corner).1);
+    // A triangle in the near plane itself is kept; one that only touches it leaves no area.
+    (signs.contains(&Sign::Positive) || signs == [Sign::Zero; 3]).then_some(signs)
+}
+
+/// What is left of `range` within the image of what the near plane keeps of a triangle, and the
+/// triangle's side whose image the segment's runs along.
+#[inline]
+fn within_image(
+    view: &ViewedScene,
+    segment: &Segment,
+    triangle: u32,
+    near_signs: [Sign; 3],
+    mut range: Range,
+) -> Option<(Cover, Option<[u32; 2]>)> {
+    let turn = view.triangle_turns()[triangle as usize];
+    let corners = view.scene().triangles()[triangle as usize];
+    let (ends, sight) = (segment.ends, view.sight());
     let mut along: Option<usize> = None;
     for side in 0..3 {
         let (p, q) = (corners[side], corners[(side + 1) % 3]);
@@ -191,18 +232,7 @@ pub(super) fn shadow(
         None => Sides::Both,
     };
     let cover = Cover { from: range.from, to: range.to, sides };
-    let border = along.map(|side| [corners[side], corners[(side + 1) % 3]]);
-    if in_plane {
-        // A segment in the triangle's plane shares its image with it only along a border.
-        return border.map(|border| Shadow::OnBorder(cover, border));
-    }
-    if contact_tolerance > 0.0 && sight.in_contact(corners, ends, contact_tolerance) {
-        return None;
-    }
-    Some(match border {
-        Some(border) if find_doubled => Shadow::AlongBorder(cover, border),
-        _ => Shadow::Covers(cover),
-    })
+    Some((cover, along.map(|side| [corners[side], corners[(side + 1) % 3]])))
 }
 
 /// The side of the segment's image on which a vertex lies that is not on it.

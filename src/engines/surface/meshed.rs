@@ -68,15 +68,16 @@ pub fn draw(
     timed(&mut stats.seconds.strokes, || {
         let mut chaining = ChainOptions {
             hidden: false,
+            hidden_levels: None,
             exact: true,
             apart_by_kind: options.apart_by_kind,
             shortest: 0.0,
         };
         if !options.exact && options.shortest_stroke_mm > 0.0 {
-            let scale = mm_per_unit(&chain(&view, &visibility, &chaining));
+            let scale = mm_per_unit(&chain(&view, &visibility, None, &chaining));
             chaining.shortest = options.shortest_stroke_mm / scale;
         }
         chaining.exact = options.exact;
-        chain(&view, &visibility, &chaining)
+        chain(&view, &visibility, None, &chaining)
     })
 }

@@ -34,7 +34,7 @@ pub(super) struct CuttingEdge {
 
 /// The sides of all triangles with the triangles along each.
 #[derive(Debug)]
-pub(super) struct Sides<'a> {
+pub(in super::super) struct Sides<'a> {
     table: Cow<'a, Topology>,
     /// The faces are the triangles, so that sides have the numbers of edges.
     sides_are_edges: bool,
@@ -42,7 +42,7 @@ pub(super) struct Sides<'a> {
 
 impl<'a> Sides<'a> {
     /// The sides of the triangles of a scene. O(triangles) when faces have more than three corners.
-    pub(super) fn new(view: &ViewedScene<'a>) -> Self {
+    pub(in super::super) fn new(view: &ViewedScene<'a>) -> Self {
         let scene = view.scene();
         let triangles = scene.triangles();
         // A face of n corners makes n − 2 triangles: as many as faces means that they are the same.
@@ -56,8 +56,17 @@ impl<'a> Sides<'a> {
         Self { table, sides_are_edges }
     }
 
+    /// Whether every side has an even number of triangles, so that they enclose whatever they do.
+    pub(super) fn are_closed(&self) -> bool {
+        let n_sides = self.table.edges().len() as u32;
+        (0..n_sides)
+            .into_par_iter()
+            .with_min_len(4096)
+            .all(|side| self.table.uses(side).len().is_multiple_of(2))
+    }
+
     /// The triangles along an edge, each with whether it runs along it upwards.
-    pub(super) fn along_edge(
+    pub(in super::super) fn along_edge(
         &self,
         view: &ViewedScene,
         edge: u32,
