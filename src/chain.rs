@@ -115,7 +115,7 @@ fn pieces(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -
             let mut pieces = Vec::with_capacity(drawn.len());
             let mut spans = Vec::new();
             for (i, drawn) in drawn.iter().enumerate() {
-                let ends = view.scene().topology().edge(drawn.edge);
+                let ends = view.scene().line(drawn.edge);
                 let images = ends.map(|end| view.image()[end as usize]);
                 let at = |t: f64| {
                     // Ends are taken as they are, so that joined pieces share the very point.

@@ -10,6 +10,7 @@
 //! | silhouette | 2 | one face front, the other not |
 //! | crease | 2 | angle between the normals above a threshold |
 //! | mesh | any | |
+//! | intersection | none | the line in which two faces cross |
 //!
 //! Two uses that run the same way mean that the faces are wound against each other; the second
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
@@ -79,7 +80,8 @@ impl Default for LineSelection {
 /// An edge that is to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DrawnEdge {
-    /// Its number in the topology.
+    /// Its number in the topology, or that of a line of intersection; see
+    /// [`Scene::line`](crate::scene::Scene::line).
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,
@@ -102,8 +104,8 @@ pub struct ImagePoint {
 }
 
 impl ImagePoint {
-    fn new(point: DVec3, camera: &Camera, frame: &Frame) -> Self {
-        let d = point - camera.eye();
+    /// The image of the point at `d` from the eye.
+    fn new(d: DVec3, camera: &Camera, frame: &Frame) -> Self {
         let depth = d.dot(frame.forward);
         let w = match camera.projection() {
             Projection::Perspective { .. } => depth,
@@ -152,9 +154,15 @@ impl<'a> ViewedScene<'a> {
     /// is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
         let positions = scene.mesh().positions();
-        let sight = Sight::new(positions, camera);
-        let frame = camera.frame();
-        let image = positions.par_iter().map(|&p| ImagePoint::new(p, camera, &frame)).collect();
+        let constructed = scene.intersections().points();
+        let sight = Sight::with_pierced(scene.points(), constructed, camera);
+        let (eye, frame) = (camera.eye(), camera.frame());
+        let image = |d: DVec3| ImagePoint::new(d, camera, &frame);
+        let mut images: Vec<ImagePoint> = Vec::with_capacity(scene.points().len());
+        images.par_extend(positions.par_iter().map(|&p| image(p - eye)));
+        // With the rest of what is rounded they are as good as images of vertices.
+        let constructed = constructed.par_iter();
+        images.par_extend(constructed.map(|p| image(p.rounded() - eye + p.rest())));
         let triangle_turns =
             scene.triangles().par_iter().map(|&[p, q, r]| sight.turn(p, q, r)).collect();
         let n_faces = scene.mesh().n_faces() as u32;
@@ -171,7 +179,7 @@ impl<'a> ViewedScene<'a> {
             scene,
             camera: *camera,
             sight,
-            image,
+            image: images,
             triangle_turns,
             facings,
             drawn: Vec::new(),
@@ -191,7 +199,7 @@ impl<'a> ViewedScene<'a> {
         edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
         edges.dedup_by_key(|drawn| drawn.edge);
         edges.retain(|drawn| {
-            let [a, b] = scene.topology().edge(drawn.edge);
+            let [a, b] = scene.line(drawn.edge);
             !view.sight.same_image(a, b)
         });
         view.drawn = edges;
@@ -213,7 +221,7 @@ impl<'a> ViewedScene<'a> {
         &self.sight
     }
 
-    /// The image of every vertex.
+    /// The image of every vertex, and of the constructed points.
     pub fn image(&self) -> &[ImagePoint] {
         &self.image
     }
@@ -229,7 +237,7 @@ impl<'a> ViewedScene<'a> {
         facings[face as usize]
     }
 
-    /// The edges to draw, in the order of the topology.
+    /// The edges to draw, in the order of the topology, then the lines of intersection.
     pub fn drawn(&self) -> &[DrawnEdge] {
         &self.drawn
     }
@@ -247,7 +255,7 @@ impl<'a> ViewedScene<'a> {
     fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<DrawnEdge> {
         let n_edges = self.scene.topology().edges().len() as u32;
         let creases = Creases::new(crease_deg);
-        (0..n_edges)
+        let mut drawn: Vec<DrawnEdge> = (0..n_edges)
             .into_par_iter()
             .with_min_len(4096)
             .filter_map(|edge| {
@@ -255,6 +263,25 @@ impl<'a> ViewedScene<'a> {
                 let [a, b] = self.scene.topology().edge(edge);
                 (!self.sight.same_image(a, b)).then_some(DrawnEdge { edge, kind })
             })
+            .collect();
+        if lines.contains(StrokeKind::Intersection) {
+            let crossings = self.intersections(&drawn);
+            drawn.extend(crossings);
+        }
+        drawn
+    }
+
+    /// The lines of intersection to draw beside the edges that are `drawn`: those that are part of
+    /// one of these are drawn already.
+    fn intersections(&self, drawn: &[DrawnEdge]) -> Vec<DrawnEdge> {
+        let is_drawn = |edge: u32| drawn.binary_search_by_key(&edge, |drawn| drawn.edge).is_ok();
+        let n_edges = self.scene.topology().edges().len() as u32;
+        let lines = self.scene.intersections().lines();
+        let drawn = lines.par_iter().zip(n_edges..self.scene.n_lines() as u32);
+        drawn
+            .filter(|(line, _)| !line.edges().any(is_drawn))
+            .filter(|(line, _)| !self.sight.same_image(line.ends[0], line.ends[1]))
+            .map(|(_, edge)| DrawnEdge { edge, kind: StrokeKind::Intersection })
             .collect()
     }
 

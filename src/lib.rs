@@ -54,9 +54,11 @@ pub mod topology;
 
 pub mod triangulate;
 
-pub mod scene;
-
 pub mod predicates;
+
+pub mod intersections;
+
+pub mod scene;
 
 pub mod view;
 

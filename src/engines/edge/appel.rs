@@ -29,6 +29,9 @@
 //!   ways by which a number can reach a vertex must give the same. A difference would be a fault of
 //!   the program; it is counted, and [`roberts`] does the edges that it concerns.
 //!
+//! Lines of intersection go to [`roberts`]: their ends lie on triangles, so that each would need a
+//! sight line for itself.
+//!
 //! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
 //! [`Settings::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
 //! tolerance says does not cover is taken away from the edge at last.
@@ -75,7 +78,7 @@ const CHUNK: usize = 512;
 /// Expected cost: the triangles, once, for the indices; for each edge the cutting edges near its
 /// image and the triangles near it in space; and a few sight lines.
 pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
-    let segments = roberts::segments(view);
+    let (segments, crossings) = apart(view, roberts::segments(view));
     let sides = Sides::new(view);
     let (cutting, is_even) = sides.cutting_edges(view);
     let n_triangles = view.scene().triangles().len();
@@ -137,11 +140,28 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     }
     counts.fallback_edges = failed.len() as u64;
     counts.sight_lines = starts.n_sight_lines;
-    if !failed.is_empty() {
-        visibility =
-            replaced_by_roberts(view, settings, &segments, &visibility, &failed, &mut counts);
+    let mut again = crossings;
+    for &i in &failed {
+        again[i as usize] = segments[i as usize];
+    }
+    if again.iter().any(Option::is_some) {
+        visibility = replaced_by_roberts(view, settings, &again, &visibility, &mut counts);
     }
     (visibility, counts)
+}
+
+/// Edges, and lines of intersection, each with nothing in place of the other.
+///
+/// Both ends of the latter lie on triangles, so none could take over a number from the edges.
+fn apart(
+    view: &ViewedScene,
+    mut segments: Vec<Option<Segment>>,
+) -> (Vec<Option<Segment>>, Vec<Option<Segment>>) {
+    let n_edges = view.scene().topology().edges().len() as u32;
+    let mut crossings = vec![None; segments.len()];
+    let first = view.drawn().partition_point(|drawn| drawn.edge < n_edges);
+    crossings[first..].swap_with_slice(&mut segments[first..]);
+    (segments, crossings)
 }
 
 /// The box of a triangle with all points behind it that are in near contact with its plane.
@@ -443,20 +463,15 @@ impl Drawing<'_, '_> {
     }
 }
 
-/// The same spans with those of the `failed` segments done anew.
+/// The same spans with those of some segments done anew.
 fn replaced_by_roberts(
     view: &ViewedScene,
     settings: &Settings,
-    segments: &[Option<Segment>],
+    again: &[Option<Segment>],
     visibility: &Visibility,
-    failed: &[u32],
     counts: &mut Counts,
 ) -> Visibility {
-    let mut again = vec![None; segments.len()];
-    for &i in failed {
-        again[i as usize] = segments[i as usize];
-    }
-    let (by_roberts, more) = roberts::solve_segments(view, settings, &again);
+    let (by_roberts, more) = roberts::solve_segments(view, settings, again);
     counts.candidate_pairs += more.candidate_pairs;
     let mut merged = Visibility::default();
     for (i, segment) in again.iter().enumerate() {

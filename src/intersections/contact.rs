@@ -1,0 +1,79 @@
+//! Where faces only touch along an edge, and where they cross there.
+//!
+//! ```text
+//!        │                │                 A face whose side lies on another face touches it.
+//!   ─────┴─────      ─────┼─────            Only with a second one beyond do the two surfaces
+//!      touches            │ crosses         cross.
+//! ```
+//!
+//! A box on a table touches it: there the box's own edge is drawn, if any. A wall that goes on
+//! below the floor crosses it, also where the floor happens to run along edges of the wall.
+
+use super::pair::{Along, End, Piece};
+use crate::predicates::{Sign, Solid};
+
+/// What pieces along edges have in common that make one crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Site {
+    /// Along a side of triangles and through another triangle.
+    Through([u32; 2], u32),
+    /// Along sides of both, the lower one first.
+    Edges([u32; 2], [u32; 2]),
+}
+
+/// Leaves out pieces along edges where faces touch but do not cross, and all but one of those that
+/// tell of the same crossing.
+pub(super) fn crossings(pieces: Vec<Piece>, solid: &Solid) -> Vec<Piece> {
+    let (doubtful, mut kept): (Vec<Piece>, Vec<Piece>) =
+        pieces.into_iter().partition(|piece| piece.along != [None; 2]);
+    let mut sited: Vec<(Site, [End; 2], Piece)> = doubtful
+        .into_iter()
+        .filter_map(|piece| {
+            let site = match piece.along {
+                [Some(a), None] => Site::Through(a.side, piece.triangles[1]),
+                [None, Some(b)] => Site::Through(b.side, piece.triangles[0]),
+                [Some(a), Some(b)] => Site::Edges(a.side.min(b.side), a.side.max(b.side)),
+                [None, None] => return None,
+            };
+            Some((site, piece.ends, piece))
+        })
+        .collect();
+    sited.sort_unstable_by_key(|&(site, ends, piece)| (site, ends, piece.triangles));
+    for group in sited.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let alongs = group.iter().flat_map(|(.., piece)| piece.along.into_iter().flatten());
+        let crosses = match group[0].0 {
+            Site::Through(..) => {
+                let on = |side: Sign| alongs.clone().any(|along| along.rest == side);
+                on(Sign::Negative) && on(Sign::Positive)
+            }
+            Site::Edges(first, last) => {
+                let fan = |side: [u32; 2]| {
+                    let fan = alongs.clone().filter(|along| along.side == side);
+                    fan.collect::<Vec<Along>>()
+                };
+                are_alternate(solid, first, &fan(first), &fan(last))
+            }
+        };
+        if crosses {
+            kept.push(group[0].2);
+        }
+    }
+    kept
+}
+
+/// Whether going around an edge, half planes of the one fan lie on both sides of two of the other.
+fn are_alternate(solid: &Solid, [p, q]: [u32; 2], a: &[Along], b: &[Along]) -> bool {
+    // The way from one half plane to another around the edge is positive up to half a turn.
+    let way = |from: u32, to: u32| solid.side_of([p, q, from], to).flipped();
+    let is_between = |from: u32, x: u32, to: u32| match way(from, to) {
+        Sign::Positive => way(from, x) == Sign::Positive && way(x, to) == Sign::Positive,
+        Sign::Negative => way(to, x) != Sign::Positive || way(x, from) != Sign::Positive,
+        Sign::Zero => way(from, x) == Sign::Positive,
+    };
+    a.iter().enumerate().any(|(i, first)| {
+        a[..i].iter().any(|second| {
+            let from_first = |x: &Along| is_between(first.corner, x.corner, second.corner);
+            b.iter().any(from_first) && !b.iter().all(from_first)
+        })
+    })
+}
