@@ -64,15 +64,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 
 fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
     let mut notes = Notes::default();
-    let mut meshes = Vec::with_capacity(job.models.len());
+    let mut models = Vec::with_capacity(job.models.len());
     let mut repairs = Repairs::default();
-    for path in &job.models {
+    for (path, &pose) in job.models.iter().zip(&job.poses) {
         let model = read_file(path, job.input_format)?;
         notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
         repairs += model.repairs;
-        meshes.push(model.mesh);
+        models.push((model.mesh, pose));
     }
-    let (mesh, arranged) = job.arrangement.arrange(meshes)?;
+    let (mesh, arranged) = job.arrangement.arrange(models)?;
     repairs += arranged;
     if mesh.n_faces() == 0 {
         return Err("no face is left; give a smaller --weld".into());

@@ -65,15 +65,18 @@ pub(super) fn crossings(pieces: Vec<Piece>, solid: &Solid) -> Vec<Piece> {
 fn are_alternate(solid: &Solid, [p, q]: [u32; 2], a: &[Along], b: &[Along]) -> bool {
     // The way from one half plane to another around the edge is positive up to half a turn.
     let way = |from: u32, to: u32| solid.side_of([p, q, from], to).flipped();
-    let is_between = |from: u32, x: u32, to: u32| match way(from, to) {
-        Sign::Positive => way(from, x) == Sign::Positive && way(x, to) == Sign::Positive,
-        Sign::Negative => way(to, x) != Sign::Positive || way(x, from) != Sign::Positive,
-        Sign::Zero => way(from, x) == Sign::Positive,
+    // Strictly between two half planes, on the way from the one to the other.
+    let is_between = |from: &Along, x: &Along, to: &Along| {
+        let [from, x, to] = [from.corner, x.corner, to.corner];
+        match way(from, to) {
+            Sign::Negative => way(to, x) == Sign::Negative || way(x, from) == Sign::Negative,
+            _ => way(from, x) == Sign::Positive && way(x, to) == Sign::Positive,
+        }
     };
     a.iter().enumerate().any(|(i, first)| {
         a[..i].iter().any(|second| {
-            let from_first = |x: &Along| is_between(first.corner, x.corner, second.corner);
-            b.iter().any(from_first) && !b.iter().all(from_first)
+            b.iter().any(|x| is_between(first, x, second))
+                && b.iter().any(|x| is_between(second, x, first))
         })
     })
 }

@@ -95,9 +95,8 @@ fn planes(pieces: &[Piece], solid: &Solid, triangles: &[[u32; 3]]) -> Vec<u32> {
         |triangle| solid.plane(triangles[triangle as usize]),
         |pairs: &mut Vec<[u32; 2]>, plane, a, b| {
             let corners = triangles[a as usize];
-            let in_plane = |&x: &u32| {
-                corners.contains(&x) || solid.side(plane, corners, x) == Sign::Zero
-            };
+            let in_plane =
+                |&x: &u32| corners.contains(&x) || solid.side(plane, corners, x) == Sign::Zero;
             if triangles[b as usize].iter().all(in_plane) {
                 pairs.push([a, b]);
             }

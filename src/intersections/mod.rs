@@ -37,7 +37,7 @@ mod tree;
 use crate::mesh::Mesh;
 use crate::predicates::{PiercePoint, Solid};
 use crate::topology::Topology;
-use pair::Piece;
+use pair::{Piece, Prepared};
 use tree::BoxTree;
 
 /// A line in which two planes' faces cross.
@@ -74,10 +74,14 @@ impl Intersections {
         let solid = Solid::new(mesh.positions());
         let tree = BoxTree::new(mesh.positions(), triangles, (0..triangles.len() as u32).collect());
         let found: Vec<Found> = tree.touching_pairs(
-            |triangle| solid.plane(triangles[triangle as usize]),
-            |found: &mut Found, plane, a, b| {
+            |triangle| Prepared::new(&solid, triangles[triangle as usize]),
+            |found: &mut Found, prepared, a, b| {
                 found.n_pairs += 1;
-                found.pieces.extend(pair::piece(&solid, triangles, plane, [a, b]));
+                if !pair::are_apart(&solid, prepared, triangles[b as usize])
+                    && let Some(piece) = pair::piece(&solid, triangles, [a, b])
+                {
+                    found.pieces.push(piece);
+                }
             },
         );
         drop(tree);

@@ -14,6 +14,7 @@
 //! named by what makes it, so that neighboring triangles agree on it.
 
 use crate::predicates::{PlaneThrough, Sign, Solid};
+use glam::DVec3;
 
 /// Where a line of intersection ends, by vertex numbers; sides have the lower number first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,18 +67,109 @@ enum Location {
     AtCorner(u32),
 }
 
+/// A triangle with what is asked of it again and again.
+#[derive(Debug)]
+pub(super) struct Prepared {
+    corners: [u32; 3],
+    points: [DVec3; 3],
+    plane: PlaneThrough,
+}
+
+impl Prepared {
+    #[inline]
+    pub(super) fn new(solid: &Solid, corners: [u32; 3]) -> Self {
+        let points = corners.map(|corner| solid.positions()[corner as usize]);
+        Self { corners, points, plane: Solid::plane_through(points[0], points[1], points[2]) }
+    }
+}
+
+/// Whether it is certain that two triangles share no line, as far as can be seen without exact
+/// arithmetic. Nearly all pairs of neighbors in a mesh end here, so it takes no detours.
+#[inline]
+pub(super) fn are_apart(solid: &Solid, a: &Prepared, corners: [u32; 3]) -> bool {
+    let [a0, a1, a2] = a.corners;
+    let [b0, b1, b2] = corners;
+    // Bit k stands for corner k.
+    let bit = |k: u32, x: u32, y: u32| u32::from(x == y) << k;
+    let of_a = bit(0, a0, b0)
+        | bit(0, a0, b1)
+        | bit(0, a0, b2)
+        | bit(1, a1, b0)
+        | bit(1, a1, b1)
+        | bit(1, a1, b2)
+        | bit(2, a2, b0)
+        | bit(2, a2, b1)
+        | bit(2, a2, b2);
+    if of_a.count_ones() >= 2 {
+        return true;
+    }
+    let of_b = bit(0, b0, a0)
+        | bit(0, b0, a1)
+        | bit(0, b0, a2)
+        | bit(1, b1, a0)
+        | bit(1, b1, a1)
+        | bit(1, b1, a2)
+        | bit(2, b2, a0)
+        | bit(2, b2, a1)
+        | bit(2, b2, a2);
+    let at = |corner: u32| solid.positions()[corner as usize];
+    let (p, q, r) = (at(b0), at(b1), at(b2));
+    let side = |plane: &PlaneThrough, point: DVec3| solid.certain_side(plane, point);
+    let sides = [side(&a.plane, p), side(&a.plane, q), side(&a.plane, r)];
+    if is_one_side(sides, of_b) {
+        return true;
+    }
+    let plane = Solid::plane_through(p, q, r);
+    let [u, v, w] = a.points;
+    let sides = [side(&plane, u), side(&plane, v), side(&plane, w)];
+    is_one_side(sides, of_a)
+        || (of_a != 0 && leave_apart(solid, a.points, of_a, sides, [p, q, r], of_b))
+}
+
+/// Whether all corners but those left out are for certain on one side.
+#[inline(always)]
+fn is_one_side(sides: [i32; 3], left_out: u32) -> bool {
+    let on = |side: i32| {
+        u32::from(sides[0] == side)
+            | u32::from(sides[1] == side) << 1
+            | u32::from(sides[2] == side) << 2
+            | left_out
+    };
+    on(1) == 7 || on(-1) == 7
+}
+
+/// Whether it is certain that two triangles with one corner in common leave it in opposite
+/// directions of the line in which their planes meet.
+///
+/// ```text
+///      a ╲    ╱ c        The side from a to b meets the plane of the triangle v c d on the other
+///        ┄┄┄●┄┄┄         side of the line through v and c than the one on which d lies.
+///      b ╱ v  ╲ d
+/// ```
+#[inline]
+fn leave_apart(
+    solid: &Solid,
+    a: [DVec3; 3],
+    shared_of_a: u32,
+    sides: [i32; 3],
+    b: [DVec3; 3],
+    shared_of_b: u32,
+) -> bool {
+    let next = |shared: u32| (shared.trailing_zeros() as usize + 1) % 3;
+    let (from, c) = (next(shared_of_a), next(shared_of_b));
+    let (to, v) = ((from + 1) % 3, (c + 2) % 3);
+    let plane = PlaneThrough::new(b[c] - b[v], a[from] - b[v], b[v]);
+    let side = solid.certain_side(&plane, a[to]);
+    side != 0 && sides[from] == side && sides[to] == -side
+}
+
 /// Signs of the corners of one triangle against the plane of another; none when that is enough to
 /// see that they share no line.
-#[inline]
-fn signs(
-    solid: &Solid,
-    plane: &PlaneThrough,
-    triangle: [u32; 3],
-    corners: [u32; 3],
-) -> Option<[Sign; 3]> {
+fn signs(solid: &Solid, triangle: [u32; 3], corners: [u32; 3]) -> Option<[Sign; 3]> {
+    let plane = solid.plane(triangle);
     let signs = corners.map(|corner| match triangle.contains(&corner) {
         true => Sign::Zero,
-        false => solid.side(plane, triangle, corner),
+        false => solid.side(&plane, triangle, corner),
     });
     let n_zeros = signs.iter().filter(|&&sign| sign == Sign::Zero).count();
     let both = signs.contains(&Sign::Positive) && signs.contains(&Sign::Negative);
@@ -87,24 +179,17 @@ fn signs(
 
 /// The line that two triangles share; `None` when it is a point or nothing, when they share a side,
 /// or when they lie in one plane or have no area.
-#[inline]
-pub(super) fn piece(
-    solid: &Solid,
-    triangles: &[[u32; 3]],
-    plane: &PlaneThrough,
-    numbers: [u32; 2],
-) -> Option<Piece> {
+#[inline(never)]
+pub(super) fn piece(solid: &Solid, triangles: &[[u32; 3]], numbers: [u32; 2]) -> Option<Piece> {
     let [a, b] = numbers.map(|t| triangles[t as usize]);
-    let shared = a.iter().filter(|corner| b.contains(corner)).count();
-    if shared >= 2 {
+    if a.iter().filter(|corner| b.contains(corner)).count() >= 2 {
         return None;
     }
-    let of_b = signs(solid, plane, a, b)?;
-    let of_a = signs(solid, &solid.plane(b), b, a)?;
+    let of_b = signs(solid, a, b)?;
+    let of_a = signs(solid, b, a)?;
     common(solid, numbers, [a, b], [of_a, of_b])
 }
 
-#[cold]
 fn common(
     solid: &Solid,
     numbers: [u32; 2],

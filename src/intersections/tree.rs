@@ -9,7 +9,8 @@
 //!   leaves      ▽▽▽▽ ▽▽▽▽ ┄ ▽▽▽▽ …                     one lane a triangle
 //! ```
 //!
-//! All leaves near a leaf are looked up at once, and each pair is met from its earlier leaf only.
+//! What is near a node over leaves is looked up at once for all that is in it, and each pair is met
+//! from its earlier leaf only.
 //! Expected cost O(n log n), whatever the sizes of the triangles, and the pairs that touch.
 //!
 //! Boxes are single precision, of differences to the middle of the scene. Both roundings keep the
@@ -24,8 +25,8 @@ const WIDTH: usize = 8;
 /// Bits of a Morton code for each axis.
 const MORTON_BITS: u32 = 10;
 
-/// Leaves that one piece of parallel work looks up.
-const CHUNK: usize = 256;
+/// Nodes over leaves that one piece of parallel work looks up.
+const CHUNK: usize = 32;
 
 /// Boxes of eight children; those that are missing touch nothing.
 #[derive(Debug, Clone, Copy)]
@@ -52,25 +53,29 @@ impl Boxes {
 
     /// The box around all.
     fn around(&self) -> (Vec3, Vec3) {
-        (0..WIDTH).map(|lane| self.get(lane)).fold(
-            (Vec3::INFINITY, Vec3::NEG_INFINITY),
-            |(low, high), (l, h)| (low.min(l), high.max(h)),
-        )
+        (0..WIDTH)
+            .map(|lane| self.get(lane))
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), (l, h)| {
+                (low.min(l), high.max(h))
+            })
     }
 
     /// A bit for each child whose box touches another.
     #[inline]
     fn touching(&self, (low, high): (Vec3, Vec3)) -> u32 {
-        let mut apart = [false; WIDTH];
+        // The widest gap of each lane; a difference has the sign of the comparison.
+        let mut gaps = [f32::NEG_INFINITY; WIDTH];
         for axis in 0..3 {
             let (l, h) = (&self.low[axis], &self.high[axis]);
             for lane in 0..WIDTH {
-                apart[lane] |= (l[lane] > high[axis]) | (h[lane] < low[axis]);
+                let (before, after) = (l[lane] - high[axis], low[axis] - h[lane]);
+                let gap = if before > after { before } else { after };
+                gaps[lane] = if gap > gaps[lane] { gap } else { gaps[lane] };
             }
         }
         let mut bits = 0;
-        for (lane, apart) in apart.into_iter().enumerate() {
-            bits |= u32::from(!apart) << lane;
+        for (lane, gap) in gaps.into_iter().enumerate() {
+            bits |= u32::from(gap <= 0.0) << lane;
         }
         bits
     }
@@ -81,7 +86,8 @@ impl Boxes {
 pub(super) struct BoxTree {
     /// The triangles in the order of the curve.
     order: Vec<u32>,
-    /// Leaves first; the node `i` of a level has the nodes `8 i …` of the one before as children.
+    /// Leaves first, and at least one level more; node `i` of a level has the nodes `8 i …` of the
+    /// one before as children.
     levels: Vec<Vec<Boxes>>,
 }
 
@@ -95,17 +101,11 @@ impl BoxTree {
                 || (DVec3::INFINITY, DVec3::NEG_INFINITY),
                 |(low, high), &p| (low.min(p), high.max(p)),
             )
-            .reduce(
-                || (DVec3::INFINITY, DVec3::NEG_INFINITY),
-                |a, b| (a.0.min(b.0), a.1.max(b.1)),
-            );
+            .reduce(|| (DVec3::INFINITY, DVec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
         // Halves first: the sum may be too large for a number.
         let middle = low * 0.5 + high * 0.5;
-        let placed: Vec<Vec3> = positions
-            .par_iter()
-            .with_min_len(1 << 14)
-            .map(|&p| (p - middle).as_vec3())
-            .collect();
+        let placed: Vec<Vec3> =
+            positions.par_iter().with_min_len(1 << 14).map(|&p| (p - middle).as_vec3()).collect();
         let box_of = |triangle: u32| {
             let [p, q, r] = triangles[triangle as usize].map(|v| placed[v as usize]);
             (p.min(q).min(r), p.max(q).max(r))
@@ -137,7 +137,7 @@ impl BoxTree {
             })
             .collect();
         let mut levels = vec![leaves];
-        while let Some(last) = levels.last().filter(|level| level.len() > 1) {
+        while let Some(last) = levels.last().filter(|last| last.len() > 1 || levels.len() == 1) {
             let next = last
                 .par_chunks(WIDTH)
                 .with_min_len(1 << 10)
@@ -166,35 +166,24 @@ impl BoxTree {
     where
         T: Default + Send,
     {
-        let leaves = &self.levels[0];
-        leaves
+        self.levels[1]
             .par_chunks(CHUNK)
             .enumerate()
-            .map(|(chunk, in_chunk)| {
+            .map(|(chunk, nodes)| {
                 let mut found = T::default();
                 let mut near = Vec::new();
                 let mut prepared = Vec::with_capacity(WIDTH);
-                for (i, boxes) in in_chunk.iter().enumerate() {
-                    let leaf = chunk * CHUNK + i;
-                    let own = self.triangles_of(leaf);
+                for (i, boxes) in nodes.iter().enumerate() {
+                    let node = chunk * CHUNK + i;
                     near.clear();
-                    self.leaves_from(leaf, boxes.around(), &mut near);
-                    prepared.clear();
-                    prepared.extend(own.iter().map(|&triangle| prepare(triangle)));
-                    for &other in &near {
-                        let others = self.triangles_of(other);
-                        let boxes_of_other = &leaves[other];
-                        for (lane, &triangle) in own.iter().enumerate() {
-                            let mut bits = boxes_of_other.touching(boxes.get(lane));
-                            if other == leaf {
-                                bits &= !1 << lane;
-                            }
-                            while bits != 0 {
-                                let with = others[bits.trailing_zeros() as usize];
-                                visit(&mut found, &prepared[lane], triangle, with);
-                                bits &= bits - 1;
-                            }
-                        }
+                    self.nodes_from(node, boxes.around(), &mut near);
+                    for leaf in node * WIDTH..self.levels[0].len().min((node + 1) * WIDTH) {
+                        let own = self.triangles_of(leaf);
+                        prepared.clear();
+                        prepared.extend(own.iter().map(|&triangle| prepare(triangle)));
+                        self.pairs_of_leaf(leaf, &near, |lane, with| {
+                            visit(&mut found, &prepared[lane], own[lane], with);
+                        });
                     }
                 }
                 found
@@ -202,19 +191,52 @@ impl BoxTree {
             .collect()
     }
 
+    /// Calls `f` with lanes of a leaf and later triangles in the nodes `near` that touch these.
+    #[inline]
+    fn pairs_of_leaf(&self, leaf: usize, near: &[usize], mut f: impl FnMut(usize, u32)) {
+        let (leaves, nodes) = (&self.levels[0], &self.levels[1]);
+        let (node, own) = (leaf / WIDTH, &leaves[leaf]);
+        let around = nodes[node].get(leaf % WIDTH);
+        for &other_node in near {
+            let mut leaf_bits = nodes[other_node].touching(around);
+            if other_node == node {
+                leaf_bits &= !0 << (leaf % WIDTH);
+            }
+            while leaf_bits != 0 {
+                let lane = leaf_bits.trailing_zeros() as usize;
+                leaf_bits &= leaf_bits - 1;
+                let other = other_node * WIDTH + lane;
+                let others = self.triangles_of(other);
+                let mut own_bits = own.touching(nodes[other_node].get(lane));
+                while own_bits != 0 {
+                    let lane = own_bits.trailing_zeros() as usize;
+                    own_bits &= own_bits - 1;
+                    let mut bits = leaves[other].touching(own.get(lane));
+                    if other == leaf {
+                        bits &= !1 << lane;
+                    }
+                    while bits != 0 {
+                        f(lane, others[bits.trailing_zeros() as usize]);
+                        bits &= bits - 1;
+                    }
+                }
+            }
+        }
+    }
+
     fn triangles_of(&self, leaf: usize) -> &[u32] {
         let start = leaf * WIDTH;
         &self.order[start..self.order.len().min(start + WIDTH)]
     }
 
-    /// The leaves from number `first` on that touch a box, in order.
-    fn leaves_from(&self, first: usize, around: (Vec3, Vec3), found: &mut Vec<usize>) {
+    /// The nodes over leaves, from number `first` on, that touch a box, in order.
+    fn nodes_from(&self, first: usize, around: (Vec3, Vec3), found: &mut Vec<usize>) {
         let top = self.levels.len() - 1;
-        if top == 0 {
+        if top == 1 {
             found.push(0);
-            return;
+        } else {
+            self.descend(top, 0, first, around, found);
         }
-        self.descend(top, 0, first, around, found);
     }
 
     fn descend(
@@ -229,12 +251,11 @@ impl BoxTree {
         while bits != 0 {
             let child = node * WIDTH + bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            // The child's last leaf.
-            let shift = 3 * (level - 1);
-            if (child + 1) << shift <= first {
+            // Children whose last node over leaves comes before the first are done with.
+            if (child + 1) << (3 * (level - 2)) <= first {
                 continue;
             }
-            if level == 1 {
+            if level == 2 {
                 found.push(child);
             } else {
                 self.descend(level - 1, child, first, around, found);

@@ -91,7 +91,10 @@ impl Lattice {
 }
 
 /// The integers that polynomials are evaluated in.
-pub(super) trait Integer: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+pub(super) trait Integer:
+    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+}
 
 impl Integer for i128 {}
 impl Integer for IBig {}

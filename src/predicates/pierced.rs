@@ -50,9 +50,7 @@ impl Homogeneous {
         let turned = |x: IBig| Dyadic::from(if is_negative { -x } else { x });
         let (of_p, of_q, w) = (turned(of_p), turned(of_q), turned(w));
         let (p, q) = (exact::dyadic(p), exact::dyadic(q));
-        let x = std::array::from_fn(|i| {
-            q[i].clone() * of_p.clone() - p[i].clone() * of_q.clone()
-        });
+        let x = std::array::from_fn(|i| q[i].clone() * of_p.clone() - p[i].clone() * of_q.clone());
         Self { x, w }
     }
 }
@@ -84,9 +82,8 @@ impl PiercePoint {
         let at = |v: u32| positions[v as usize];
         let exact = Homogeneous::pierced(edge.map(at), triangle.map(at));
         let high = DVec3::from_array(std::array::from_fn(|i| ratio(&exact.x[i], &exact.w)));
-        let rest: [Dyadic; 3] = std::array::from_fn(|i| {
-            exact.x[i].clone() - exact.w.clone() * Dyadic::from(high[i])
-        });
+        let rest: [Dyadic; 3] =
+            std::array::from_fn(|i| exact.x[i].clone() - exact.w.clone() * Dyadic::from(high[i]));
         let low = DVec3::from_array(std::array::from_fn(|i| ratio(&rest[i], &exact.w)));
         let is_exact = rest.iter().all(|x| x.sign() == super::Sign::Zero);
         Self {
@@ -152,7 +149,8 @@ impl PiercePoint {
         for i in 0..3 {
             let difference = (self.high[i] - other.high[i]) + (self.low[i] - other.low[i]);
             // Four roundings of numbers no larger than these.
-            let sizes = (self.high[i] - other.high[i]).abs() + self.low[i].abs() + other.low[i].abs();
+            let sizes =
+                (self.high[i] - other.high[i]).abs() + self.low[i].abs() + other.low[i].abs();
             let error = 8.0 * f64::EPSILON * sizes + 2.0 * (self.error[i] + other.error[i]);
             if difference.abs() > error {
                 return difference.total_cmp(&0.0);
@@ -209,10 +207,7 @@ fn from_base(x: &Homogeneous, base: &[Dyadic; 3]) -> [Dyadic; 3] {
 }
 
 /// As [`exact::point_volumes`].
-pub(super) fn point_volumes(
-    triangle: [DVec3; 3],
-    x: [&Homogeneous; 2],
-) -> [IBig; 2] {
+pub(super) fn point_volumes(triangle: [DVec3; 3], x: [&Homogeneous; 2]) -> [IBig; 2] {
     let [a, b, c] = triangle.map(exact::dyadic);
     let normal = exact::cross(&exact::minus(&b, &a), &exact::minus(&c, &a));
     values(x, |x| exact::dot(&normal, &from_base(x, &a)))

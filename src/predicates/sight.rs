@@ -53,8 +53,10 @@ pub struct PlaneThrough {
 }
 
 impl PlaneThrough {
-    #[inline]
-    pub(super) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
+    /// The plane through `base`, `base + a` and `base + b`; both vectors must be differences of two
+    /// points, rounded once.
+    #[inline(always)]
+    pub(crate) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
         let (a_size, b_size) = (a.abs(), b.abs());
         Self {
             normal: a.cross(b),
@@ -67,7 +69,7 @@ impl PlaneThrough {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn negated_at(&self, x: DVec3) -> Estimate {
         let d = x - self.base;
         Estimate {
@@ -83,8 +85,7 @@ impl PlaneThrough {
         let sizes = high.abs() + low.abs();
         Estimate {
             value: -self.normal.dot(high + low),
-            error: TRIPLE_PRODUCT_ERROR * self.spread.dot(sizes)
-                + 2.0 * self.spread.dot(x.error()),
+            error: TRIPLE_PRODUCT_ERROR * self.spread.dot(sizes) + 2.0 * self.spread.dot(x.error()),
         }
     }
 }

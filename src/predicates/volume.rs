@@ -41,9 +41,24 @@ impl<'a> Solid<'a> {
 
     /// The plane of a triangle, for [`side`](Self::side).
     #[inline]
-    pub fn plane(&self, [p, q, r]: [u32; 3]) -> PlaneThrough {
-        let base = self.position(p);
-        PlaneThrough::new(self.position(q) - base, self.position(r) - base, base)
+    pub fn plane(&self, triangle: [u32; 3]) -> PlaneThrough {
+        let [p, q, r] = triangle.map(|corner| self.position(corner));
+        Self::plane_through(p, q, r)
+    }
+
+    /// The same by the positions of the corners.
+    #[inline(always)]
+    pub fn plane_through(p: DVec3, q: DVec3, r: DVec3) -> PlaneThrough {
+        PlaneThrough::new(q - p, r - p, p)
+    }
+
+    /// The side of a point when the filter is certain of it: 1, −1, or 0 for unknown.
+    #[inline(always)]
+    pub fn certain_side(&self, plane: &PlaneThrough, point: DVec3) -> i32 {
+        let estimate = plane.negated_at(point);
+        let side = i32::from(estimate.value > estimate.error)
+            - i32::from(estimate.value < -estimate.error);
+        if self.in_window { side } else { 0 }
     }
 
     /// The side of `x`: the sign of `−(q − p) × (r − p) · (x − p)`, with the plane of the triangle.
@@ -66,8 +81,7 @@ impl<'a> Solid<'a> {
         let [p, q, r] = triangle.map(|v| self.position(v));
         let x = self.position(x);
         if self.is_robust {
-            let [p, q, r, x] =
-                [p, q, r, x].map(|p| robust::Coord3D { x: p.x, y: p.y, z: p.z });
+            let [p, q, r, x] = [p, q, r, x].map(|p| robust::Coord3D { x: p.x, y: p.y, z: p.z });
             return Sign::of(robust::orient3d(p, q, r, x));
         }
         let [volume, _] = exact::point_volumes(p, q, r, [x, x]);

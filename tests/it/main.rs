@@ -9,6 +9,7 @@ mod drawings;
 mod engines;
 mod formula;
 mod gallery;
+mod intersections;
 mod laws;
 mod line_svg;
 mod optimize;

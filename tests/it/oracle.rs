@@ -7,6 +7,7 @@
 //! The eye is a homogeneous point: (eye, 1) in perspective, (−forward, 0) in orthographic views,
 //! so that one formula serves both.
 
+pub(crate) mod crossings;
 pub(crate) mod exact;
 pub(crate) mod ray_cast;
 pub(crate) mod triangulate;
