@@ -39,7 +39,8 @@ impl Scene {
     /// For the cost see [`crate::intersections`].
     #[must_use]
     pub fn with_intersections(mut self) -> Self {
-        self.intersections = Intersections::new(&self.mesh, &self.triangles, &self.topology);
+        self.intersections =
+            Intersections::new(&self.mesh, &self.triangles, &self.triangle_faces, &self.topology);
         self.points = Vec::new();
         let constructed = self.intersections.points();
         if !constructed.is_empty() {

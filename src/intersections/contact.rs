@@ -19,6 +19,8 @@ enum Site {
     Through([u32; 2], u32),
     /// Along sides of both, the lower one first.
     Edges([u32; 2], [u32; 2]),
+    /// Along a diagonal of a face that is an edge of other faces, or a diagonal of another.
+    Diagonal([u32; 2], [u32; 2]),
 }
 
 /// Leaves out pieces along edges where faces touch but do not cross, and all but one of those that
@@ -30,6 +32,9 @@ pub(super) fn crossings(pieces: Vec<Piece>, solid: &Solid) -> Vec<Piece> {
         .into_iter()
         .filter_map(|piece| {
             let site = match piece.along {
+                [Some(a), _] if let Some(faces) = piece.diagonal_of => {
+                    Site::Diagonal(a.side, faces)
+                }
                 [Some(a), None] => Site::Through(a.side, piece.triangles[1]),
                 [None, Some(b)] => Site::Through(b.side, piece.triangles[0]),
                 [Some(a), Some(b)] => Site::Edges(a.side.min(b.side), a.side.max(b.side)),
@@ -45,6 +50,13 @@ pub(super) fn crossings(pieces: Vec<Piece>, solid: &Solid) -> Vec<Piece> {
             Site::Through(..) => {
                 let on = |side: Sign| alongs.clone().any(|along| along.rest == side);
                 on(Sign::Negative) && on(Sign::Positive)
+            }
+            Site::Diagonal(side, _) => {
+                let fan = |k: usize| {
+                    let fan = group.iter().filter_map(|(.., piece)| piece.along[k]);
+                    fan.collect::<Vec<Along>>()
+                };
+                are_alternate(solid, side, &fan(0), &fan(1))
             }
             Site::Edges(first, last) => {
                 let fan = |side: [u32; 2]| {

@@ -30,6 +30,7 @@
 //! predicates", 2003) in that ends are compared by what makes them, never by their place.
 
 mod contact;
+mod diagonals;
 mod lines;
 mod pair;
 mod tree;
@@ -37,6 +38,7 @@ mod tree;
 use crate::mesh::Mesh;
 use crate::predicates::{PiercePoint, Solid};
 use crate::topology::Topology;
+use diagonals::Diagonals;
 use pair::{Piece, Prepared};
 use tree::BoxTree;
 
@@ -70,15 +72,18 @@ pub struct Intersections {
 
 impl Intersections {
     /// Finds where the triangles of a mesh cross. See the module for the cost.
-    pub fn new(mesh: &Mesh, triangles: &[[u32; 3]], topology: &Topology) -> Self {
+    ///
+    /// `faces` tells which face each triangle is part of; triangles of a face follow each other.
+    pub fn new(mesh: &Mesh, triangles: &[[u32; 3]], faces: &[u32], topology: &Topology) -> Self {
+        let diagonals = Diagonals::new(triangles, faces, mesh.n_faces());
         let solid = Solid::new(mesh.positions());
         let tree = BoxTree::new(mesh.positions(), triangles, (0..triangles.len() as u32).collect());
         let found: Vec<Found> = tree.touching_pairs(
             |triangle| Prepared::new(&solid, triangles[triangle as usize]),
             |found: &mut Found, prepared, a, b| {
                 found.n_pairs += 1;
-                if !pair::are_apart(&solid, prepared, triangles[b as usize])
-                    && let Some(piece) = pair::piece(&solid, triangles, [a, b])
+                if !pair::are_apart(&solid, &diagonals, prepared, triangles[b as usize])
+                    && let Some(piece) = pair::piece(&solid, triangles, &diagonals, [a, b])
                 {
                     found.pieces.push(piece);
                 }

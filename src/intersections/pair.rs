@@ -13,6 +13,7 @@
 //! All of it is signs of volumes of four input points, so nothing is constructed yet. An end is
 //! named by what makes it, so that neighboring triangles agree on it.
 
+use super::diagonals::Diagonals;
 use crate::predicates::{PlaneThrough, Sign, Solid};
 use glam::DVec3;
 
@@ -41,6 +42,9 @@ pub(super) struct Piece {
     pub sites: [Site; 2],
     /// For each triangle the side that the piece runs along, if it does, and its other corner.
     pub along: [Option<Along>; 2],
+    /// For a side that both triangles have, the face of which it is a diagonal; and the other
+    /// triangle's, if it is a diagonal there too.
+    pub diagonal_of: Option<[u32; 2]>,
 }
 
 /// A side of a triangle in the plane of another.
@@ -86,7 +90,12 @@ impl Prepared {
 /// Whether it is certain that two triangles share no line, as far as can be seen without exact
 /// arithmetic. Nearly all pairs of neighbors in a mesh end here, so it takes no detours.
 #[inline]
-pub(super) fn are_apart(solid: &Solid, a: &Prepared, corners: [u32; 3]) -> bool {
+pub(super) fn are_apart(
+    solid: &Solid,
+    diagonals: &Diagonals,
+    a: &Prepared,
+    corners: [u32; 3],
+) -> bool {
     let [a0, a1, a2] = a.corners;
     let [b0, b1, b2] = corners;
     // Bit k stands for corner k.
@@ -101,7 +110,7 @@ pub(super) fn are_apart(solid: &Solid, a: &Prepared, corners: [u32; 3]) -> bool 
         | bit(2, a2, b1)
         | bit(2, a2, b2);
     if of_a.count_ones() >= 2 {
-        return true;
+        return diagonals.is_empty();
     }
     let of_b = bit(0, b0, a0)
         | bit(0, b0, a1)
@@ -177,17 +186,62 @@ fn signs(solid: &Solid, triangle: [u32; 3], corners: [u32; 3]) -> Option<[Sign; 
     (both || n_zeros == 2).then_some(signs)
 }
 
-/// The line that two triangles share; `None` when it is a point or nothing, when they share a side,
-/// or when they lie in one plane or have no area.
+/// The line that two triangles share; `None` when it is a point or nothing, when they share a side
+/// that is an edge of both faces, or when they lie in one plane or have no area.
 #[inline(never)]
-pub(super) fn piece(solid: &Solid, triangles: &[[u32; 3]], numbers: [u32; 2]) -> Option<Piece> {
+pub(super) fn piece(
+    solid: &Solid,
+    triangles: &[[u32; 3]],
+    diagonals: &Diagonals,
+    numbers: [u32; 2],
+) -> Option<Piece> {
     let [a, b] = numbers.map(|t| triangles[t as usize]);
     if a.iter().filter(|corner| b.contains(corner)).count() >= 2 {
-        return None;
+        return diagonal(solid, triangles, diagonals, numbers);
     }
     let of_b = signs(solid, a, b)?;
     let of_a = signs(solid, b, a)?;
     common(solid, numbers, [a, b], [of_a, of_b])
+}
+
+/// The side that two triangles of different faces share, when it is a diagonal of one of these.
+fn diagonal(
+    solid: &Solid,
+    triangles: &[[u32; 3]],
+    diagonals: &Diagonals,
+    numbers: [u32; 2],
+) -> Option<Piece> {
+    let faces = numbers.map(|t| diagonals.face(t));
+    if faces[0] == faces[1] {
+        return None;
+    }
+    let [a, b] = numbers.map(|t| triangles[t as usize]);
+    let i = (0..3).find(|&i| !b.contains(&a[i]))?;
+    let side = sorted([a[(i + 1) % 3], a[(i + 2) % 3]]);
+    let [of_a, of_b] = numbers.map(|t| diagonals.has(t, triangles[t as usize], side));
+    if !of_a && !of_b {
+        return None;
+    }
+    // The face that it is a diagonal of goes first; with two such faces, the lower one.
+    let turn = !of_a || (of_b && faces[1] < faces[0]);
+    let [first, last] = if turn { [numbers[1], numbers[0]] } else { numbers };
+    let corner = |t: u32| triangles[t as usize].into_iter().find(|corner| !side.contains(corner));
+    let (of_first, of_last) = (corner(first)?, corner(last)?);
+    let rest = solid.side_of(triangles[first as usize], of_last);
+    if rest == Sign::Zero {
+        return None;
+    }
+    let along = [of_first, of_last].map(|corner| Some(Along { side, rest, corner }));
+    Some(Piece {
+        triangles: [first, last],
+        ends: side.map(End::Vertex),
+        sites: side.map(|end| ([end; 2], first)),
+        along,
+        diagonal_of: Some([
+            diagonals.face(first),
+            if of_a && of_b { diagonals.face(last) } else { u32::MAX },
+        ]),
+    })
 }
 
 fn common(
@@ -214,7 +268,13 @@ fn common(
         std::mem::swap(&mut first, &mut last);
     }
     let along = [0, 1].map(|k| along(corners[k], signs[k]));
-    Some(Piece { triangles: numbers, ends: [first.0, last.0], sites: [first.1, last.1], along })
+    Some(Piece {
+        triangles: numbers,
+        ends: [first.0, last.0],
+        sites: [first.1, last.1],
+        along,
+        diagonal_of: None,
+    })
 }
 
 /// The side of a triangle that lies in the other's plane.

@@ -23,12 +23,39 @@ struct Line {
 
 /// What a triangle is at a line that lies in its plane.
 struct Sheet {
-    /// The triangle it runs through, or the edge it runs along.
-    surface: (usize, usize, usize),
+    /// The triangle that the line runs through, or the edge or diagonal of a face that it runs
+    /// along.
+    surface: Surface,
     from: Ratio,
     to: Ratio,
     /// Directions off the line into the triangle.
     sides: Vec<[Int; 3]>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Surface {
+    Triangle(usize),
+    Edge(usize, usize),
+    Diagonal(usize, usize, usize),
+}
+
+/// A part of a face.
+struct Triangle<'w> {
+    corners: [usize; 3],
+    face: usize,
+    border: &'w [usize],
+}
+
+impl Triangle<'_> {
+    fn side(&self, a: usize, b: usize) -> Surface {
+        let n = self.border.len();
+        let is_edge = (0..n).any(|i| {
+            let pair = [self.border[i], self.border[(i + 1) % n]];
+            pair == [a, b] || pair == [b, a]
+        });
+        let (a, b) = (a.min(b), a.max(b));
+        if is_edge { Surface::Edge(a, b) } else { Surface::Diagonal(self.face, a, b) }
+    }
 }
 
 impl Line {
@@ -50,7 +77,8 @@ impl Line {
         [x, y, z, &self.square * &s.denominator]
     }
 
-    fn sheet(&self, number: usize, corners: [usize; 3], points: &[[Int; 3]]) -> Option<Sheet> {
+    fn sheet(&self, number: usize, triangle: &Triangle, points: &[[Int; 3]]) -> Option<Sheet> {
+        let corners = triangle.corners;
         let (normal, height) = plane(corners, points);
         let in_plane = sign(&dot(&normal, &self.direction)) == 0
             && dot(&normal, &self.base) == &height * &self.square;
@@ -84,9 +112,9 @@ impl Line {
             let (a, b) = (corners[i], corners[j]);
             let third = 3 - i - j;
             let side = if sign(&off_line[third]) > 0 { off } else { back };
-            ((0, a.min(b), a.max(b)), vec![side])
+            (triangle.side(a, b), vec![side])
         } else {
-            ((1, number, 0), vec![off, back])
+            (Surface::Triangle(number), vec![off, back])
         };
         Some(Sheet { surface, from, to, sides })
     }
@@ -130,13 +158,18 @@ fn plane(corners: [usize; 3], points: &[[Int; 3]]) -> ([Int; 3], Int) {
 impl World {
     /// Every piece of a line in which surfaces cross, possibly several times.
     pub(crate) fn crossings(&self) -> Result<Vec<Crossing>, String> {
-        let triangles = self.triangles()?;
-        let planes: Vec<_> = triangles.iter().map(|&t| plane(t, &self.points)).collect();
+        let mut triangles = Vec::new();
+        for (face, border) in self.faces.iter().enumerate() {
+            for corners in super::triangulate::triangles(&self.points, border)? {
+                triangles.push(Triangle { corners, face, border });
+            }
+        }
+        let planes: Vec<_> = triangles.iter().map(|t| plane(t.corners, &self.points)).collect();
         let mut found = Vec::new();
         for i in 0..triangles.len() {
             for j in 0..i {
                 let Some(line) = Line::between(&planes[i], &planes[j]) else { continue };
-                let sheet = |t: usize| line.sheet(t, triangles[t], &self.points);
+                let sheet = |t: usize| line.sheet(t, &triangles[t], &self.points);
                 let (Some(a), Some(b)) = (sheet(i), sheet(j)) else { continue };
                 let from = a.from.clone().max(b.from.clone());
                 let to = a.to.clone().min(b.to.clone());
