@@ -3,6 +3,7 @@
 //! Triangles that share an edge do not cross there. But where the edge of some faces happens to be a
 //! diagonal of another one, as vertices go, the faces may, and how a face is cut must not matter.
 
+use crate::mesh::Mesh;
 use rayon::prelude::*;
 
 /// Diagonals of all faces with more than three corners.
@@ -15,9 +16,10 @@ pub(super) struct Diagonals<'a> {
 }
 
 impl<'a> Diagonals<'a> {
-    /// Finds the sides that two triangles of one face have in common. O(triangles).
-    pub(super) fn new(triangles: &[[u32; 3]], faces: &'a [u32], n_faces: usize) -> Self {
-        if triangles.len() == n_faces {
+    /// Finds the sides that two triangles of one face have in common, but are no edges of it.
+    /// O(corners log corners of a face), in parallel.
+    pub(super) fn new(mesh: &Mesh, triangles: &[[u32; 3]], faces: &'a [u32]) -> Self {
+        if triangles.len() == mesh.n_faces() {
             return Self { faces, sides: Vec::new() };
         }
         let groups: Vec<&[u32]> = faces.chunk_by(|a, b| a == b).collect();
@@ -31,7 +33,10 @@ impl<'a> Diagonals<'a> {
             .par_iter()
             .with_min_len(1 << 10)
             .zip(&starts)
-            .map(|(group, &start)| in_common(&triangles[start..start + group.len()]))
+            .map(|(group, &start)| {
+                let border = mesh.face(group[0]);
+                in_common(border, &triangles[start..start + group.len()])
+            })
             .collect();
         Self { faces, sides: of_faces.concat() }
     }
@@ -59,7 +64,9 @@ fn side_of(corners: [u32; 3], i: usize) -> [u32; 2] {
 }
 
 /// For each triangle of a face a bit for each side that another of them has too.
-fn in_common(triangles: &[[u32; 3]]) -> Vec<u8> {
+///
+/// The border of a keyhole runs twice along its bridge, which is an edge and no diagonal.
+fn in_common(border: &[u32], triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut common = vec![0; triangles.len()];
     if triangles.len() < 2 {
         return common;
@@ -68,7 +75,14 @@ fn in_common(triangles: &[[u32; 3]]) -> Vec<u8> {
         .flat_map(|t| (0..3).map(move |i| (side_of(triangles[t], i), t, i)))
         .collect();
     sides.sort_unstable();
-    for same in sides.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+    let twice = || sides.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1);
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    if twice().count() >= triangles.len() {
+        let next = border.iter().cycle().skip(1);
+        edges = border.iter().zip(next).map(|(&a, &b)| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+    }
+    for same in twice().filter(|same| edges.binary_search(&same[0].0).is_err()) {
         for &(_, t, i) in same {
             common[t] |= 1 << i;
         }

@@ -75,7 +75,7 @@ impl Intersections {
     ///
     /// `faces` tells which face each triangle is part of; triangles of a face follow each other.
     pub fn new(mesh: &Mesh, triangles: &[[u32; 3]], faces: &[u32], topology: &Topology) -> Self {
-        let diagonals = Diagonals::new(triangles, faces, mesh.n_faces());
+        let diagonals = Diagonals::new(mesh, triangles, faces);
         let solid = Solid::new(mesh.positions());
         let tree = BoxTree::new(mesh.positions(), triangles, (0..triangles.len() as u32).collect());
         let found: Vec<Found> = tree.touching_pairs(
