@@ -4,7 +4,7 @@ mod sheet;
 
 use std::path::Path;
 
-use hiddenline::arrange::{Arrangement, UpAxis};
+use hiddenline::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::DrawOptions;
 use hiddenline::framing::{Framing, Standpoint};
@@ -18,7 +18,7 @@ pub(crate) fn plot() -> Result<Plot> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");
     let model = read_file(Path::new(path), None)?;
     let upright = Arrangement { up_axis: UpAxis::Y, ..Arrangement::default() };
-    let (mesh, _) = upright.arrange(vec![model.mesh])?;
+    let (mesh, _) = upright.arrange(vec![(model.mesh, Pose::default())])?;
     let standpoint =
         Standpoint::Angles { azimuth_deg: 215.0, elevation_deg: 14.0, distance: Some(4.5) };
     Sheet {

@@ -1,4 +1,5 @@
-//! Models put together: turned upright, scaled, rotated, merged into one mesh, welded.
+//! Models put together: turned upright, each scaled, rotated and moved to its place, merged into
+//! one mesh, welded.
 
 use glam::{DMat3, DVec3};
 
@@ -15,64 +16,76 @@ pub enum UpAxis {
     Z,
 }
 
-/// What is done to models before they are drawn, in this order.
+/// Where a model goes, in this order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arrangement {
-    /// Which axis points up.
-    pub up_axis: UpAxis,
+pub struct Pose {
     /// Factor for all coordinates.
     pub scale: f64,
     /// Angles in degrees around x, then y, then z, each counter-clockwise seen from its tip.
     pub rotate_deg: DVec3,
+    /// What is added to all positions at last, in model units after scaling.
+    pub move_by: DVec3,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self { scale: 1.0, rotate_deg: DVec3::ZERO, move_by: DVec3::ZERO }
+    }
+}
+
+/// What is done to all models alike.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Arrangement {
+    /// Which axis points up, before a model is placed.
+    pub up_axis: UpAxis,
     /// Vertices closer together than this, in model units after scaling, become one; see
     /// [`Mesh::weld`].
     pub weld_distance: f64,
 }
 
-impl Default for Arrangement {
-    fn default() -> Self {
-        Self { up_axis: UpAxis::Z, scale: 1.0, rotate_deg: DVec3::ZERO, weld_distance: 0.0 }
-    }
-}
-
 impl Arrangement {
-    /// Puts meshes together. A single mesh to which nothing is done stays bit for bit as it is.
+    /// Puts meshes together, each in its place. A single mesh to which nothing is done stays bit for
+    /// bit as it is.
     ///
-    /// The whole turn is one matrix, applied once; turns by quarters are exact.
+    /// The whole turn of a mesh is one matrix, applied once; turns by quarters are exact. Vertices
+    /// of different meshes that end up at equal positions become one.
     ///
     /// # Errors
     /// A coordinate becomes infinite, the meshes together are too large for one, or the weld
     /// distance is negative.
-    pub fn arrange(&self, mut meshes: Vec<Mesh>) -> Result<(Mesh, Repairs), MeshError> {
-        if meshes.len() == 1 && *self == Self::default() {
-            return Ok((meshes.pop().unwrap_or_default(), Repairs::default()));
+    pub fn arrange(&self, mut models: Vec<(Mesh, Pose)>) -> Result<(Mesh, Repairs), MeshError> {
+        let is_in_place =
+            |models: &[(Mesh, Pose)]| matches!(models, [(_, pose)] if *pose == Pose::default());
+        if *self == Self::default() && is_in_place(&models) {
+            return Ok((models.pop().unwrap_or_default().0, Repairs::default()));
         }
         let mut soup = PolygonSoup::default();
-        for mesh in &meshes {
+        for (mesh, pose) in &models {
+            let first = soup.positions.len();
             append(&mut soup, mesh)?;
-        }
-        drop(meshes);
-        let matrix = self.matrix();
-        if matrix != DMat3::IDENTITY {
-            for position in &mut soup.positions {
-                *position = matrix * *position;
+            let matrix = self.matrix(pose);
+            if matrix != DMat3::IDENTITY || pose.move_by != DVec3::ZERO {
+                for position in &mut soup.positions[first..] {
+                    *position = matrix * *position + pose.move_by;
+                }
             }
         }
+        drop(models);
         let (mesh, mut repairs) = Mesh::new(soup)?;
         let (mesh, welded) = mesh.weld(self.weld_distance)?;
         repairs += welded;
         Ok((mesh, repairs))
     }
 
-    fn matrix(&self) -> DMat3 {
+    fn matrix(&self, pose: &Pose) -> DMat3 {
         let upright = match self.up_axis {
             UpAxis::Y => DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y),
             UpAxis::Z => DMat3::IDENTITY,
         };
         let ((sx, cx), (sy, cy), (sz, cz)) = (
-            sin_cos_deg(self.rotate_deg.x),
-            sin_cos_deg(self.rotate_deg.y),
-            sin_cos_deg(self.rotate_deg.z),
+            sin_cos_deg(pose.rotate_deg.x),
+            sin_cos_deg(pose.rotate_deg.y),
+            sin_cos_deg(pose.rotate_deg.z),
         );
         let around_x =
             DMat3::from_cols(DVec3::X, DVec3::new(0.0, cx, sx), DVec3::new(0.0, -sx, cx));
@@ -80,7 +93,7 @@ impl Arrangement {
             DMat3::from_cols(DVec3::new(cy, 0.0, -sy), DVec3::Y, DVec3::new(sy, 0.0, cy));
         let around_z =
             DMat3::from_cols(DVec3::new(cz, sz, 0.0), DVec3::new(-sz, cz, 0.0), DVec3::Z);
-        around_z * around_y * around_x * upright * self.scale
+        around_z * around_y * around_x * upright * pose.scale
     }
 }
 
@@ -121,24 +134,38 @@ mod tests {
     #[test]
     fn y_up_becomes_z_up() {
         let arrangement = Arrangement { up_axis: UpAxis::Y, ..Arrangement::default() };
-        let (mesh, _) = arrangement.arrange(vec![triangle(dvec3(1.0, 2.0, 3.0))]).expect("finite");
+        let models = vec![(triangle(dvec3(1.0, 2.0, 3.0)), Pose::default())];
+        let (mesh, _) = arrangement.arrange(models).expect("finite");
         let expected = [dvec3(1.0, -3.0, 2.0), dvec3(2.0, -3.0, 2.0), dvec3(1.0, -3.0, 3.0)];
         assert_eq!(mesh.positions(), expected);
     }
 
     #[test]
     fn quarter_turns_are_exact_and_in_order() {
-        let arrangement =
-            Arrangement { rotate_deg: dvec3(90.0, 0.0, 90.0), ..Arrangement::default() };
-        let (mesh, _) = arrangement.arrange(vec![triangle(dvec3(0.1, 0.2, 0.3))]).expect("finite");
+        let pose = Pose { rotate_deg: dvec3(90.0, 0.0, 90.0), ..Pose::default() };
+        let models = vec![(triangle(dvec3(0.1, 0.2, 0.3)), pose)];
+        let (mesh, _) = Arrangement::default().arrange(models).expect("finite");
         // Around x: (0.1, −0.3, 0.2); then around z: (0.3, 0.1, 0.2).
         assert_eq!(mesh.positions()[0], dvec3(0.3, 0.1, 0.2));
     }
 
     #[test]
+    fn each_model_has_a_place_of_its_own() {
+        let moved =
+            Pose { scale: 2.0, rotate_deg: dvec3(0.0, 0.0, 90.0), move_by: dvec3(10.0, 0.0, 0.0) };
+        let models =
+            vec![(triangle(DVec3::ZERO), Pose::default()), (triangle(dvec3(1.0, 0.0, 0.0)), moved)];
+        let (mesh, _) = Arrangement::default().arrange(models).expect("finite");
+        assert_eq!(mesh.positions()[0], DVec3::ZERO);
+        // Scaled: (2, 0, 0); turned: (0, 2, 0); moved.
+        assert_eq!(mesh.positions()[3], dvec3(10.0, 2.0, 0.0));
+    }
+
+    #[test]
     fn two_models_share_their_equal_vertices() {
-        let meshes = vec![triangle(DVec3::ZERO), triangle(DVec3::X)];
-        let (mesh, repairs) = Arrangement::default().arrange(meshes).expect("finite");
+        let models = [triangle(DVec3::ZERO), triangle(DVec3::X)];
+        let models = models.map(|mesh| (mesh, Pose::default())).to_vec();
+        let (mesh, repairs) = Arrangement::default().arrange(models).expect("finite");
         assert_eq!((mesh.n_faces(), mesh.positions().len()), (2, 5));
         assert_eq!(repairs.welded_vertices, 1);
         assert_eq!(mesh.face_parts(), [0, 1]);

@@ -11,6 +11,7 @@
 //! | crease | 2 | angle between the normals above a threshold |
 //! | material | 2 | between two materials or groups; only when asked for |
 //! | mesh | any | |
+//! | intersection | none | the line in which two faces cross |
 //!
 //! Two uses that run the same way mean that the faces are wound against each other; the second
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
@@ -102,7 +103,8 @@ impl Default for LineSelection {
 /// An edge that is to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DrawnEdge {
-    /// Its number in the topology.
+    /// Its number in the topology, or that of a line of intersection; see
+    /// [`Scene::line`](crate::scene::Scene::line).
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,
@@ -125,8 +127,8 @@ pub struct ImagePoint {
 }
 
 impl ImagePoint {
-    fn new(point: DVec3, camera: &Camera, frame: &Frame) -> Self {
-        let d = point - camera.eye();
+    /// The image of the point at `d` from the eye.
+    fn new(d: DVec3, camera: &Camera, frame: &Frame) -> Self {
         let depth = d.dot(frame.forward);
         let w = match camera.projection() {
             Projection::Perspective { .. } => depth,
@@ -177,9 +179,15 @@ impl<'a> ViewedScene<'a> {
     /// is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
         let positions = scene.mesh().positions();
-        let sight = Sight::new(positions, camera);
-        let frame = camera.frame();
-        let image = positions.par_iter().map(|&p| ImagePoint::new(p, camera, &frame)).collect();
+        let constructed = scene.intersections().points();
+        let sight = Sight::with_pierced(scene.points(), constructed, camera);
+        let (eye, frame) = (camera.eye(), camera.frame());
+        let image = |d: DVec3| ImagePoint::new(d, camera, &frame);
+        let mut images: Vec<ImagePoint> = Vec::with_capacity(scene.points().len());
+        images.par_extend(positions.par_iter().map(|&p| image(p - eye)));
+        // With the rest of what is rounded they are as good as images of vertices.
+        let constructed = constructed.par_iter();
+        images.par_extend(constructed.map(|p| image(p.rounded() - eye + p.rest())));
         let triangle_turns =
             scene.triangles().par_iter().map(|&[p, q, r]| sight.turn(p, q, r)).collect();
         let n_faces = scene.mesh().n_faces() as u32;
@@ -196,7 +204,7 @@ impl<'a> ViewedScene<'a> {
             scene,
             camera: *camera,
             sight,
-            image,
+            image: images,
             triangle_turns,
             facings,
             drawn: Vec::new(),
@@ -220,7 +228,7 @@ impl<'a> ViewedScene<'a> {
         edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
         edges.dedup_by_key(|drawn| drawn.edge);
         edges.retain(|drawn| {
-            let [a, b] = scene.topology().edge(drawn.edge);
+            let [a, b] = scene.line(drawn.edge);
             !view.sight.same_image(a, b)
         });
         view.drawn = edges;
@@ -242,7 +250,7 @@ impl<'a> ViewedScene<'a> {
         &self.sight
     }
 
-    /// The image of every vertex.
+    /// The image of every vertex, and of the constructed points.
     pub fn image(&self) -> &[ImagePoint] {
         &self.image
     }
@@ -258,7 +266,7 @@ impl<'a> ViewedScene<'a> {
         facings[face as usize]
     }
 
-    /// The edges to draw, in the order of the topology.
+    /// The edges to draw, in the order of the topology, then the lines of intersection.
     pub fn drawn(&self) -> &[DrawnEdge] {
         &self.drawn
     }
@@ -287,7 +295,7 @@ impl<'a> ViewedScene<'a> {
             .with(StrokeKind::Silhouette)
             .with(StrokeKind::Boundary)
             .with(StrokeKind::Nonmanifold);
-        (0..n_edges)
+        let mut drawn: Vec<(DrawnEdge, bool)> = (0..n_edges)
             .into_par_iter()
             .with_min_len(4096)
             .filter_map(|edge| {
@@ -300,6 +308,26 @@ impl<'a> ViewedScene<'a> {
                 let drawn = (DrawnEdge { edge, kind }, whole.is_some());
                 (!self.sight.same_image(a, b)).then_some(drawn)
             })
+            .collect();
+        if lines.contains(StrokeKind::Intersection) {
+            let crossings = self.intersections(&drawn);
+            drawn.extend(crossings.into_iter().map(|crossing| (crossing, true)));
+        }
+        drawn
+    }
+
+    /// The lines of intersection to draw beside the edges that are `drawn`: those that are part of
+    /// one of these are drawn already.
+    fn intersections(&self, drawn: &[(DrawnEdge, bool)]) -> Vec<DrawnEdge> {
+        let is_drawn =
+            |edge: u32| drawn.binary_search_by_key(&edge, |(drawn, _)| drawn.edge).is_ok();
+        let n_edges = self.scene.topology().edges().len() as u32;
+        let lines = self.scene.intersections().lines();
+        let drawn = lines.par_iter().zip(n_edges..self.scene.n_lines() as u32);
+        drawn
+            .filter(|(line, _)| !line.edges().any(is_drawn))
+            .filter(|(line, _)| !self.sight.same_image(line.ends[0], line.ends[1]))
+            .map(|(_, edge)| DrawnEdge { edge, kind: StrokeKind::Intersection })
             .collect()
     }
 

@@ -101,6 +101,9 @@ impl DrawOptions {
 
 /// Draws `scene` as `camera` sees it; counts and times go to `stats`.
 ///
+/// Lines of intersection are drawn when the scene has them; see
+/// [`Scene::with_intersections`](crate::scene::Scene::with_intersections).
+///
 /// `mm_per_unit` tells how many millimetres on paper an image unit becomes for a drawing with the
 /// given, not yet joined, strokes. It is asked only when short strokes are to be dropped.
 pub fn draw(

@@ -7,7 +7,8 @@
 //!                  │               │ (as a mesh)           │
 //!                  ▼               ▼                       ▼
 //!                scene ◄───────────┘                engines::surface
-//!       topology, triangulate                       horizons over a grid
+//!       topology, triangulate,                      horizons over a grid
+//!           intersections                                  │
 //!                  │                                       │
 //!   view ──────► classify ─► engines::edge ─► visibility   │
 //!   framing    faces, edges  what is hidden   spans of qi  │
@@ -33,7 +34,8 @@
 //! Vertices as read (`f64`) *are* the scene. Every decision — which side, in front or not, front
 //! or back, the order of two cuts — is the sign of a polynomial in those numbers and is decided
 //! exactly by [`predicates`]; nothing is compared against a tolerance. Only end points of visible
-//! pieces and image coordinates are rounded, each once.
+//! pieces and image coordinates are rounded, each once. Points where faces cross, which are no
+//! vertices, enter decisions unrounded too.
 //!
 //! # Units and frames
 //!
@@ -54,9 +56,11 @@ pub mod topology;
 
 pub mod triangulate;
 
-pub mod scene;
-
 pub mod predicates;
+
+pub mod intersections;
+
+pub mod scene;
 
 pub mod view;
 

@@ -1,8 +1,18 @@
-//! The scene, once for all views: mesh, triangles that hide, and topology.
+//! The scene, once for all views: mesh, triangles that hide, topology, and where faces cross.
+//!
+//! All that can be drawn is numbered in one row, and so are its ends:
+//!
+//! ```text
+//!   lines     edges of the mesh       | lines of intersection
+//!   points    vertices of the mesh    | ends of those that are no vertices
+//! ```
 
+use crate::intersections::{Intersection, Intersections};
 use crate::mesh::Mesh;
+use crate::predicates::PiercePoint;
 use crate::topology::Topology;
 use crate::triangulate::triangulate;
+use glam::DVec3;
 
 /// A mesh with everything about it that does not depend on the view.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -11,6 +21,9 @@ pub struct Scene {
     topology: Topology,
     triangles: Vec<[u32; 3]>,
     triangle_faces: Vec<u32>,
+    intersections: Intersections,
+    /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
+    points: Vec<DVec3>,
 }
 
 impl Scene {
@@ -18,7 +31,24 @@ impl Scene {
     pub fn new(mesh: Mesh) -> Self {
         let topology = Topology::new(&mesh);
         let (triangles, triangle_faces) = triangulate(&mesh);
-        Self { mesh, topology, triangles, triangle_faces }
+        Self { mesh, topology, triangles, triangle_faces, ..Self::default() }
+    }
+
+    /// Also finds the lines in which faces cross, so that they can be drawn.
+    ///
+    /// For the cost see [`crate::intersections`].
+    #[must_use]
+    pub fn with_intersections(mut self) -> Self {
+        self.intersections =
+            Intersections::new(&self.mesh, &self.triangles, &self.triangle_faces, &self.topology);
+        self.points = Vec::new();
+        let constructed = self.intersections.points();
+        if !constructed.is_empty() {
+            self.points.reserve_exact(self.mesh.positions().len() + constructed.len());
+            self.points.extend_from_slice(self.mesh.positions());
+            self.points.extend(constructed.iter().map(PiercePoint::rounded));
+        }
+        self
     }
 
     /// The mesh.
@@ -39,5 +69,37 @@ impl Scene {
     /// The face that each triangle is part of.
     pub fn triangle_faces(&self) -> &[u32] {
         &self.triangle_faces
+    }
+
+    /// Where faces cross; nothing before [`with_intersections`](Self::with_intersections).
+    pub fn intersections(&self) -> &Intersections {
+        &self.intersections
+    }
+
+    /// The positions of all vertices, then those of constructed points, rounded.
+    pub fn points(&self) -> &[DVec3] {
+        if self.points.is_empty() { self.mesh.positions() } else { &self.points }
+    }
+
+    /// Number of edges and lines of intersection.
+    pub fn n_lines(&self) -> usize {
+        self.topology.edges().len() + self.intersections.lines().len()
+    }
+
+    /// The ends of an edge or line of intersection, as numbers of points. Panics when there is no
+    /// such line.
+    #[inline]
+    pub fn line(&self, line: u32) -> [u32; 2] {
+        match self.topology.edges().get(line as usize) {
+            Some(&ends) => ends,
+            None => self.intersections.lines()[line as usize - self.topology.edges().len()].ends,
+        }
+    }
+
+    /// The line of intersection with this number among all lines; `None` for an edge.
+    #[inline]
+    pub fn intersection(&self, line: u32) -> Option<&Intersection> {
+        let number = (line as usize).checked_sub(self.topology.edges().len())?;
+        self.intersections.lines().get(number)
     }
 }

@@ -19,7 +19,9 @@ pub struct Stats {
     pub triangles: usize,
     /// Distinct edges of these faces, before clipping.
     pub edges: usize,
-    /// Edges selected for drawing.
+    /// Lines of intersection, before any are selected for drawing.
+    pub intersections: usize,
+    /// Edges and lines of intersection selected for drawing.
     pub drawn_edges: usize,
     /// Strokes of the drawing.
     pub strokes: usize,
@@ -97,6 +99,8 @@ pub struct Counts {
     pub checksum_failures: u64,
     /// Sight lines along which all layers were counted.
     pub sight_lines: u64,
+    /// Pairs of triangles whose boxes touch, tested for lines of intersection.
+    pub intersection_pairs: u64,
 }
 
 /// Does `work` and adds its wall time to `seconds`.

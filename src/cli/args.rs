@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use hiddenline::arrange::{Arrangement, UpAxis};
+use hiddenline::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
 use hiddenline::engines::edge::Engine;
@@ -34,6 +34,8 @@ Examples:
       A picture of what is seen from a point. Numbers may be negative.
   hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
       True to scale, for a model in millimetres.
+  hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
+      Two models, the second one lifted.
   cat part.stl | hiddenline draw - --input-format stl > part.svg
       From standard input to standard output.";
 
@@ -71,12 +73,16 @@ struct ModelArgs {
     /// Axis that points up in the models
     #[arg(long, value_name = "AXIS", value_enum, default_value = "z")]
     up_axis: Axis,
-    /// Factor for all coordinates
-    #[arg(long, value_name = "FACTOR", value_parser = values::positive, default_value_t = 1.0)]
-    scale: f64,
-    /// Turn the models by angles in degrees around x, then y, then z
+    /// Factor for all coordinates; once for all models, or once for each in their order
+    #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
+    scale: Vec<f64>,
+    /// Turn by angles in degrees around x, then y, then z; once for all models, or once for each
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    rotate: Option<DVec3>,
+    rotate: Vec<DVec3>,
+    /// Move by so much, after scaling and turning; once for all models, or once for each
+    #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vector)]
+    #[arg(allow_hyphen_values = true)]
+    move_by: Vec<DVec3>,
     /// Make one vertex of those closer together than this, in model units
     #[arg(long, value_name = "D", value_parser = values::not_negative, default_value_t = 0.0)]
     weld: f64,
@@ -352,6 +358,8 @@ enum SvgElement {
 /// What is to be done, with nothing left to check but what depends on the files.
 pub(super) struct Job {
     pub(super) models: Vec<PathBuf>,
+    /// One for each model.
+    pub(super) poses: Vec<Pose>,
     pub(super) input_format: Option<ModelFormat>,
     pub(super) arrangement: Arrangement,
     pub(super) view: ViewSource,
@@ -397,14 +405,13 @@ impl DrawArgs {
         let output = output.options(lines.exact)?;
         let apart_by_kind = output.format == Format::Json || output.plotting.has_pens_by_kind();
         Ok(Job {
+            poses: model.poses()?,
             input_format: model.input_format.map(InputFormat::format),
             arrangement: Arrangement {
                 up_axis: match model.up_axis {
                     Axis::Y => UpAxis::Y,
                     Axis::Z => UpAxis::Z,
                 },
-                scale: model.scale,
-                rotate_deg: model.rotate.unwrap_or(DVec3::ZERO),
                 weld_distance: model.weld,
             },
             models: model.models,
@@ -415,6 +422,38 @@ impl DrawArgs {
             draw: DrawOptions { apart_by_kind, ..lines.options() },
             output,
         })
+    }
+}
+
+impl ModelArgs {
+    /// Where each model goes; the error is a message about usage.
+    fn poses(&self) -> Result<Vec<Pose>, String> {
+        let n_models = self.models.len();
+        let scales = for_each_model("--scale", &self.scale, 1.0, n_models)?;
+        let turns = for_each_model("--rotate", &self.rotate, DVec3::ZERO, n_models)?;
+        let moves = for_each_model("--move", &self.move_by, DVec3::ZERO, n_models)?;
+        let placed = scales.into_iter().zip(turns).zip(moves);
+        Ok(placed
+            .map(|((scale, rotate_deg), move_by)| Pose { scale, rotate_deg, move_by })
+            .collect())
+    }
+}
+
+/// The values of an option that is given not at all, once for all models, or once for each.
+fn for_each_model<T: Copy>(
+    name: &str,
+    given: &[T],
+    default: T,
+    n_models: usize,
+) -> Result<Vec<T>, String> {
+    match *given {
+        [] => Ok(vec![default; n_models]),
+        [one] => Ok(vec![one; n_models]),
+        _ if given.len() == n_models => Ok(given.to_vec()),
+        _ => Err(format!(
+            "{name} is given {} times for {n_models} models; give it once for all, or once for each",
+            given.len()
+        )),
     }
 }
 

@@ -11,7 +11,7 @@ use hiddenline::page::{Page, PlotOptions};
 use hiddenline::read::read_file;
 use hiddenline::scene::Scene;
 use hiddenline::stats::{Stats, timed};
-use hiddenline::strokes::Drawing;
+use hiddenline::strokes::{Drawing, StrokeKind};
 use hiddenline::view::Camera;
 use hiddenline::writers::json;
 
@@ -39,7 +39,11 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         ViewSource::File(path) => read_camera(path)?,
     };
     progress.stage("finding edges");
-    let scene = timed(&mut seconds.topology, || Scene::new(mesh));
+    let asks_for_intersections = job.draw.lines.contains(StrokeKind::Intersection);
+    let scene = timed(&mut seconds.topology, || {
+        let scene = Scene::new(mesh);
+        if asks_for_intersections { scene.with_intersections() } else { scene }
+    });
     stats.seconds = seconds;
     progress.stage("drawing");
     // A page that cannot be made is reported when the drawing is placed on it.
@@ -60,15 +64,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 
 fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
     let mut notes = Notes::default();
-    let mut meshes = Vec::with_capacity(job.models.len());
+    let mut models = Vec::with_capacity(job.models.len());
     let mut repairs = Repairs::default();
-    for path in &job.models {
+    for (path, &pose) in job.models.iter().zip(&job.poses) {
         let model = read_file(path, job.input_format)?;
         notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
         repairs += model.repairs;
-        meshes.push(model.mesh);
+        models.push((model.mesh, pose));
     }
-    let (mesh, arranged) = job.arrangement.arrange(meshes)?;
+    let (mesh, arranged) = job.arrangement.arrange(models)?;
     repairs += arranged;
     if mesh.n_faces() == 0 {
         return Err("no face is left; give a smaller --weld".into());
@@ -112,6 +116,8 @@ fn count(stats: &mut Stats, scene: &Scene, drawing: &Drawing) {
     stats.faces = scene.mesh().n_faces();
     stats.triangles = scene.triangles().len();
     stats.edges = scene.topology().edges().len();
+    stats.intersections = scene.intersections().lines().len();
+    stats.counts.intersection_pairs = scene.intersections().n_pairs();
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
 }

@@ -91,23 +91,26 @@ impl Lattice {
 }
 
 /// The integers that polynomials are evaluated in.
-trait Integer: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+pub(super) trait Integer:
+    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+}
 
 impl Integer for i128 {}
 impl Integer for IBig {}
 
-fn minus<T: Integer>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+pub(super) fn minus<T: Integer>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     std::array::from_fn(|i| a[i].clone() - b[i].clone())
 }
 
-fn cross<T: Integer>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+pub(super) fn cross<T: Integer>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         a[j].clone() * b[k].clone() - a[k].clone() * b[j].clone()
     })
 }
 
-fn dot<T: Integer>(a: &[T; 3], b: &[T; 3]) -> T {
+pub(super) fn dot<T: Integer>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0].clone() * b[0].clone() + a[1].clone() * b[1].clone() + a[2].clone() * b[2].clone()
 }
 
@@ -191,7 +194,7 @@ pub fn parallel(a: DVec3, b: DVec3, direction: DVec3) -> bool {
 
 /// A number `value · 2^exponent`: what is left when inputs of several scales meet in one
 /// polynomial.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Dyadic {
     value: IBig,
     exponent: i32,
@@ -201,6 +204,12 @@ impl From<f64> for Dyadic {
     fn from(x: f64) -> Self {
         let x = OddScaled::new(x);
         Self { value: IBig::from(x.odd), exponent: x.exponent }
+    }
+}
+
+impl From<IBig> for Dyadic {
+    fn from(value: IBig) -> Self {
+        Self { value, exponent: 0 }
     }
 }
 
@@ -245,12 +254,12 @@ impl Mul for Dyadic {
     }
 }
 
-fn dyadic(p: DVec3) -> [Dyadic; 3] {
+pub(super) fn dyadic(p: DVec3) -> [Dyadic; 3] {
     p.to_array().map(Dyadic::from)
 }
 
 /// Two dyadic numbers as integers of one scale.
-fn same_scale([a, b]: [Dyadic; 2]) -> [IBig; 2] {
+pub(super) fn same_scale([a, b]: [Dyadic; 2]) -> [IBig; 2] {
     let (a, b, _) = a.aligned(b);
     [a, b]
 }

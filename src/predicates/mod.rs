@@ -39,10 +39,14 @@
 pub mod cut;
 pub mod exact;
 
+mod pierced;
 mod sight;
+mod volume;
 
 pub use cut::{Cut, CutPlane};
+pub use pierced::{Homogeneous, PiercePoint};
 pub use sight::{PlaneThrough, Sight, Slab, Viewpoint};
+pub use volume::Solid;
 
 use glam::{DVec2, DVec3};
 

@@ -1,5 +1,6 @@
 //! Points seen from one place: signs and estimates of turns and depths by vertex number.
 
+use super::pierced::{self, Homogeneous, PiercePoint};
 use super::{Estimate, Sign, TRIPLE_PRODUCT_ERROR, exact};
 use crate::view::{Camera, Projection};
 use dashu_int::IBig;
@@ -20,10 +21,19 @@ pub enum Viewpoint {
 /// are then no smaller than 2⁻³⁰⁵ or zero.
 const FILTER_WINDOW: std::ops::RangeInclusive<f64> = 1e-76..=1e76;
 
+/// Whether the bounds of the filters hold for a point.
+pub(super) fn fits_filter(p: &DVec3) -> bool {
+    let fits = |x: f64| x == 0.0 || FILTER_WINDOW.contains(&x.abs());
+    fits(p.x) && fits(p.y) && fits(p.z)
+}
+
 /// The points of a scene as one camera sees them; answers every question of [`super`].
 #[derive(Debug)]
 pub struct Sight<'a> {
     positions: &'a [DVec3],
+    /// The last of the points, where these are constructed.
+    pierced: &'a [PiercePoint],
+    n_vertices: usize,
     viewpoint: Viewpoint,
     forward: DVec3,
     near: f64,
@@ -50,8 +60,10 @@ pub struct Slab {
 }
 
 impl PlaneThrough {
-    #[inline]
-    fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
+    /// The plane through `base`, `base + a` and `base + b`; both vectors must be differences of two
+    /// points, rounded once.
+    #[inline(always)]
+    pub(crate) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
         let (a_size, b_size) = (a.abs(), b.abs());
         Self {
             normal: a.cross(b),
@@ -71,12 +83,23 @@ impl PlaneThrough {
         3.0 * longest.max_element()
     }
 
-    #[inline]
-    fn negated_at(&self, x: DVec3) -> Estimate {
+    #[inline(always)]
+    pub(super) fn negated_at(&self, x: DVec3) -> Estimate {
         let d = x - self.base;
         Estimate {
             value: -self.normal.dot(d),
             error: TRIPLE_PRODUCT_ERROR * self.spread.dot(d.abs()),
+        }
+    }
+
+    /// The same for a constructed point: one rounding more, and what the point itself lacks.
+    #[cold]
+    fn negated_at_pierced(&self, x: &PiercePoint) -> Estimate {
+        let (high, low) = (x.rounded() - self.base, x.rest());
+        let sizes = high.abs() + low.abs();
+        Estimate {
+            value: -self.normal.dot(high + low),
+            error: TRIPLE_PRODUCT_ERROR * self.spread.dot(sizes) + 2.0 * self.spread.dot(x.error()),
         }
     }
 }
@@ -84,18 +107,26 @@ impl PlaneThrough {
 impl<'a> Sight<'a> {
     /// The points of `positions`, all finite, as `camera` sees them. O(points).
     pub fn new(positions: &'a [DVec3], camera: &Camera) -> Self {
+        Self::with_pierced(positions, &[], camera)
+    }
+
+    /// The same where the last of the positions are those of constructed points, rounded.
+    pub fn with_pierced(
+        positions: &'a [DVec3],
+        pierced: &'a [PiercePoint],
+        camera: &Camera,
+    ) -> Self {
+        let n_vertices = positions.len() - pierced.len();
         let forward = camera.forward();
         let (viewpoint, near) = match camera.projection() {
             Projection::Perspective { near, .. } => (Viewpoint::Eye(camera.eye()), near),
             Projection::Orthographic => (Viewpoint::Direction(forward), 0.0),
         };
-        let fits = |p: &DVec3| {
-            let fits = |x: f64| x == 0.0 || FILTER_WINDOW.contains(&x.abs());
-            fits(p.x) && fits(p.y) && fits(p.z)
-        };
-        let in_window = positions.par_iter().with_min_len(1 << 14).all(fits)
-            && [forward, camera.eye()].iter().all(fits);
-        Self { positions, viewpoint, forward, near, in_window, n_exact: AtomicU64::new(0) }
+        let vertices = &positions[..n_vertices];
+        let in_window = vertices.par_iter().with_min_len(1 << 14).all(fits_filter)
+            && [forward, camera.eye()].iter().all(fits_filter);
+        let n_exact = AtomicU64::new(0);
+        Self { positions, pierced, n_vertices, viewpoint, forward, near, in_window, n_exact }
     }
 
     /// The points.
@@ -121,6 +152,49 @@ impl<'a> Sight<'a> {
     #[inline]
     fn position(&self, vertex: u32) -> DVec3 {
         self.positions[vertex as usize]
+    }
+
+    /// A constructed point, unless it is the very point that its position says.
+    #[inline]
+    fn pierced(&self, vertex: u32) -> Option<&'a PiercePoint> {
+        if (vertex as usize) < self.n_vertices {
+            return None;
+        }
+        self.pierced.get(vertex as usize - self.n_vertices).filter(|point| !point.is_exact())
+    }
+
+    /// Both points in homogeneous coordinates, when at least one is not what its position says.
+    fn homogeneous(&self, points: [u32; 2]) -> Option<[Homogeneous; 2]> {
+        let is_given = points.iter().all(|&x| self.pierced(x).is_none());
+        (!is_given).then(|| {
+            points.map(|x| match self.pierced(x) {
+                Some(point) => point.homogeneous(),
+                None => Homogeneous::from(self.position(x)),
+            })
+        })
+    }
+
+    /// Whether the numbers of a constructed point's edges tell that it is on a line.
+    #[inline]
+    fn is_on_edge(&self, vertex: u32, p: u32, q: u32) -> bool {
+        vertex as usize >= self.n_vertices
+            && self.pierced[vertex as usize - self.n_vertices].is_on_edge(p, q)
+    }
+
+    /// Whether the numbers of a constructed point's edges tell that it is in a triangle's plane.
+    #[inline]
+    fn is_in_plane(&self, vertex: u32, triangle: [u32; 3]) -> bool {
+        vertex as usize >= self.n_vertices
+            && self.pierced[vertex as usize - self.n_vertices].is_in_plane(triangle)
+    }
+
+    /// The value of a plane at a point, which may be a constructed one.
+    #[inline]
+    fn estimate_at(&self, plane: &PlaneThrough, x: u32) -> Estimate {
+        match self.pierced(x) {
+            None => plane.negated_at(self.position(x)),
+            Some(point) => plane.negated_at_pierced(point),
+        }
     }
 
     /// An estimate's sign, unless the numbers are outside the window in which its bound holds.
@@ -172,10 +246,10 @@ impl<'a> Sight<'a> {
     /// The estimate has the sign that is returned.
     #[inline]
     pub fn turn_at(&self, plane: &PlaneThrough, p: u32, q: u32, x: u32) -> (Estimate, Sign) {
-        if x == p || x == q {
+        if x == p || x == q || self.is_on_edge(x, p, q) {
             return (Estimate::ZERO, Sign::Zero);
         }
-        let estimate = plane.negated_at(self.position(x));
+        let estimate = self.estimate_at(plane, x);
         self.settled(estimate, || self.exact_turns(p, q, [x, x]))
     }
 
@@ -184,16 +258,21 @@ impl<'a> Sight<'a> {
     /// The estimate has the sign that is returned.
     #[inline]
     pub fn depth_at(&self, plane: &PlaneThrough, triangle: [u32; 3], x: u32) -> (Estimate, Sign) {
-        if triangle.contains(&x) {
+        if triangle.contains(&x) || self.is_in_plane(x, triangle) {
             return (Estimate::ZERO, Sign::Zero);
         }
-        let estimate = plane.negated_at(self.position(x));
+        let estimate = self.estimate_at(plane, x);
         self.settled(estimate, || self.exact_depths(triangle, [x, x]))
     }
 
-    /// The sign of `turn(a, b, c)`: positive when the image of the path turns counter-clockwise.
+    /// The sign of `turn(a, b, c)`; of constructed points only `a` and `b` may be: positive when the image of the path turns counter-clockwise.
     #[inline]
     pub fn turn(&self, a: u32, b: u32, c: u32) -> Sign {
+        if let Some([a, b]) = self.homogeneous([a, b]) {
+            // The estimates are for planes through vertices.
+            self.count_exact();
+            return pierced::turn(self.viewpoint, [&a, &b], self.position(c));
+        }
         self.turn_at(&self.sight_plane(a, b), a, b, c).1
     }
 
@@ -234,6 +313,10 @@ impl<'a> Sight<'a> {
 
     /// Whether the images of two vertices are the same point.
     pub fn same_image(&self, a: u32, b: u32) -> bool {
+        if let Some([a, b]) = self.homogeneous([a, b]) {
+            self.count_exact();
+            return pierced::same_image(self.viewpoint, [&a, &b]);
+        }
         let plane = self.sight_plane(a, b);
         let differs = plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any();
         if self.in_window && differs {
@@ -263,10 +346,15 @@ impl<'a> Sight<'a> {
         };
         let d = self.position(x) - eye;
         let limit = self.near * self.forward.length_squared();
-        let estimate = Estimate {
+        let size = self.forward.abs();
+        let mut estimate = Estimate {
             value: d.dot(self.forward) - limit,
-            error: TRIPLE_PRODUCT_ERROR * (d.abs().dot(self.forward.abs()) + limit),
+            error: TRIPLE_PRODUCT_ERROR * (d.abs().dot(size) + limit),
         };
+        if let Some(point) = self.pierced(x) {
+            // The rest is left out, and counts as error.
+            estimate.error += 2.0 * size.dot(point.rest().abs() + point.error());
+        }
         self.settled(estimate, || self.exact_near_distances([x, x]))
     }
 
@@ -294,11 +382,11 @@ impl<'a> Sight<'a> {
                 beyond < 0.0
             } else {
                 self.count_exact();
-                exact::within_distance(
-                    triangle.map(|v| self.position(v)),
-                    self.position(x),
-                    distance,
-                )
+                let corners = triangle.map(|v| self.position(v));
+                match self.pierced(x) {
+                    None => exact::within_distance(corners, self.position(x), distance),
+                    Some(x) => pierced::within_distance(corners, &x.homogeneous(), distance),
+                }
             }
         })
     }
@@ -341,39 +429,53 @@ impl<'a> Sight<'a> {
     }
 
     pub(super) fn exact_turns(&self, p: u32, q: u32, x: [u32; 2]) -> [IBig; 2] {
-        let [p, q, x0, x1] = [p, q, x[0], x[1]].map(|v| self.position(v));
-        match self.viewpoint {
-            Viewpoint::Eye(eye) => exact::point_volumes(eye, p, q, [x0, x1]),
-            Viewpoint::Direction(forward) => exact::direction_volumes(forward, p, q, [x0, x1]),
-        }
-        .map(|volume| -volume)
+        let [p, q] = [p, q].map(|v| self.position(v));
+        let volumes = match (self.homogeneous(x), self.viewpoint) {
+            (None, Viewpoint::Eye(eye)) => exact::point_volumes(eye, p, q, self.both(x)),
+            (None, Viewpoint::Direction(forward)) => {
+                exact::direction_volumes(forward, p, q, self.both(x))
+            }
+            (Some([a, b]), Viewpoint::Eye(eye)) => pierced::point_volumes([eye, p, q], [&a, &b]),
+            (Some([a, b]), Viewpoint::Direction(forward)) => {
+                pierced::direction_volumes(forward, [p, q], [&a, &b])
+            }
+        };
+        volumes.map(|volume| -volume)
     }
 
     pub(super) fn exact_depths(&self, triangle: [u32; 3], x: [u32; 2]) -> [IBig; 2] {
         let [p, q, r] = triangle.map(|v| self.position(v));
-        exact::point_volumes(p, q, r, x.map(|v| self.position(v))).map(|volume| -volume)
+        match self.homogeneous(x) {
+            None => exact::point_volumes(p, q, r, self.both(x)),
+            Some([a, b]) => pierced::point_volumes([p, q, r], [&a, &b]),
+        }
+        .map(|volume| -volume)
     }
 
     pub(super) fn exact_near_distances(&self, x: [u32; 2]) -> [IBig; 2] {
-        match self.viewpoint {
-            Viewpoint::Eye(eye) => {
-                exact::near_distances(eye, self.forward, self.near, x.map(|v| self.position(v)))
-            }
-            Viewpoint::Direction(_) => [IBig::ONE, IBig::ONE],
+        let Viewpoint::Eye(eye) = self.viewpoint else {
+            return [IBig::ONE, IBig::ONE];
+        };
+        match self.homogeneous(x) {
+            None => exact::near_distances(eye, self.forward, self.near, self.both(x)),
+            Some([a, b]) => pierced::near_distances(eye, self.forward, self.near, [&a, &b]),
         }
     }
 
     pub(super) fn exact_near_cut_values(&self, triangle: [u32; 3], x: [u32; 2]) -> [IBig; 2] {
-        match self.viewpoint {
-            Viewpoint::Eye(eye) => exact::near_cut_values(
-                eye,
-                self.forward,
-                self.near,
-                triangle.map(|v| self.position(v)),
-                x.map(|v| self.position(v)),
-            ),
-            Viewpoint::Direction(_) => [IBig::ONE, IBig::ONE],
+        let Viewpoint::Eye(eye) = self.viewpoint else {
+            return [IBig::ONE, IBig::ONE];
+        };
+        let corners = triangle.map(|v| self.position(v));
+        let (forward, near) = (self.forward, self.near);
+        match self.homogeneous(x) {
+            None => exact::near_cut_values(eye, forward, near, corners, self.both(x)),
+            Some([a, b]) => pierced::near_cut_values(eye, forward, near, corners, [&a, &b]),
         }
+    }
+
+    fn both(&self, points: [u32; 2]) -> [DVec3; 2] {
+        points.map(|x| self.position(x))
     }
 }
 

@@ -7,6 +7,7 @@
 //! The eye is a homogeneous point: (eye, 1) in perspective, (−forward, 0) in orthographic views,
 //! so that one formula serves both.
 
+pub(crate) mod crossings;
 pub(crate) mod exact;
 pub(crate) mod ray_cast;
 pub(crate) mod triangulate;
@@ -78,7 +79,7 @@ pub(crate) struct EdgeTruth {
     /// In order of t and without gaps; empty when nothing is kept or the image is a point.
     pub pieces: Vec<Piece>,
     /// The same for triangles at any depth, the edge's own too: where this is 0 nothing but the
-    /// background is seen on one side of the edge.
+    /// background is seen on one side of the edge. Empty for lines of intersection.
     pub image_pieces: Vec<Piece>,
 }
 

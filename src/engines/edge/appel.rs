@@ -30,6 +30,9 @@
 //!   lines must meet an even number of triangles as well (module `parity`). A difference would be a
 //!   fault of the program; it is counted, and [`roberts`] does the edges that it concerns.
 //!
+//! Lines of intersection go to [`roberts`]: their ends lie on triangles, so that each would need a
+//! sight line for itself.
+//!
 //! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
 //! [`Settings::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
 //! tolerance says does not cover is taken away from the edge at last.
@@ -83,7 +86,7 @@ const CHUNK: usize = 512;
 /// Expected cost: the triangles, once, for the indices; for each edge the cutting edges near its
 /// image and the triangles near it in space; and a few sight lines.
 pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
-    let segments = roberts::segments(view);
+    let (segments, crossings) = apart(view, roberts::segments(view));
     let sides = Sides::new(view);
     let (cutting, is_even) = sides.cutting_edges(view);
     let rounding = Rounding::new(view);
@@ -94,8 +97,8 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
         Place::Within(bounds.reaching(f64::INFINITY))
     });
     let Some(places) = Places::new(view, &rounding, &segments) else {
-        // Nothing is drawn, or numbers are so large that their differences are not finite.
-        return roberts::solve_segments(view, settings, &segments);
+        // No edge is drawn, or numbers are so large that their differences are not finite.
+        return roberts::solve(view, settings);
     };
     let tolerance = settings.contact_tolerance;
     let near = NearTriangles::new(view, &rounding, &places, &segments, tolerance);
@@ -156,11 +159,28 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     }
     counts.fallback_edges = failed.len() as u64;
     counts.sight_lines = starts.n_sight_lines;
-    if !failed.is_empty() {
-        visibility =
-            replaced_by_roberts(view, settings, &segments, &visibility, &failed, &mut counts);
+    let mut again = crossings;
+    for &i in &failed {
+        again[i as usize] = segments[i as usize];
+    }
+    if again.iter().any(Option::is_some) {
+        visibility = replaced_by_roberts(view, settings, &again, &visibility, &mut counts);
     }
     (visibility, counts)
+}
+
+/// Edges, and lines of intersection, each with nothing in place of the other.
+///
+/// Both ends of the latter lie on triangles, so none could take over a number from the edges.
+fn apart(
+    view: &ViewedScene,
+    mut segments: Vec<Option<Segment>>,
+) -> (Vec<Option<Segment>>, Vec<Option<Segment>>) {
+    let n_edges = view.scene().topology().edges().len() as u32;
+    let mut crossings = vec![None; segments.len()];
+    let first = view.drawn().partition_point(|drawn| drawn.edge < n_edges);
+    crossings[first..].swap_with_slice(&mut segments[first..]);
+    (segments, crossings)
 }
 
 fn triangles_that_the_near_plane_cuts(view: &ViewedScene, rounding: &Rounding) -> Vec<u32> {
@@ -447,20 +467,15 @@ impl Drawing<'_, '_> {
     }
 }
 
-/// The same spans with those of the `failed` segments done anew.
+/// The same spans with those of some segments done anew.
 fn replaced_by_roberts(
     view: &ViewedScene,
     settings: &Settings,
-    segments: &[Option<Segment>],
+    again: &[Option<Segment>],
     visibility: &Visibility,
-    failed: &[u32],
     counts: &mut Counts,
 ) -> Visibility {
-    let mut again = vec![None; segments.len()];
-    for &i in failed {
-        again[i as usize] = segments[i as usize];
-    }
-    let (by_roberts, more) = roberts::solve_segments(view, settings, &again);
+    let (by_roberts, more) = roberts::solve_segments(view, settings, again);
     counts.candidate_pairs += more.candidate_pairs;
     let mut merged = Visibility::default();
     for (i, segment) in again.iter().enumerate() {

@@ -1,15 +1,15 @@
-//! A drawn edge as the engines see it: its ends, what the near plane leaves of it, its image.
+//! A drawn line as the engines see it: its ends, what the near plane leaves of it, its image.
 
 use crate::classify::ViewedScene;
 use crate::predicates::{Cut, CutPlane, Sign};
 use glam::DVec2;
 
-/// An edge clipped by the near plane, with its rounded image for quick rejection.
+/// An edge or line of intersection, clipped by the near plane, with its rounded image for quick rejection.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Segment {
-    /// Number of the edge in the topology.
+    /// Its number among the lines of the scene.
     pub edge: u32,
-    /// Its vertices, in the direction of the parameter.
+    /// Its end points, in the direction of the parameter.
     pub ends: [u32; 2],
     /// Where the kept part begins.
     pub from: Cut,
@@ -22,9 +22,9 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    /// The part of an edge that the near plane keeps; `None` when nothing of it is left.
+    /// The part of a line that the near plane keeps; `None` when nothing of it is left.
     pub(super) fn new(view: &ViewedScene, edge: u32) -> Option<Self> {
-        let ends = view.scene().topology().edge(edge);
+        let ends = view.scene().line(edge);
         let sight = view.sight();
         let (mut from, mut to) = (Cut::START, Cut::END);
         if view.near_plane_cuts() {

@@ -126,19 +126,19 @@ pub(super) fn shadow(
     let sight = view.sight();
     let mut range = Range { from: segment.from, to: segment.to };
     // Depth first: it rules out all that lies behind.
-    let plane = sight.triangle_plane(corners);
-    let [a, b] = ends.map(|end| sight.depth_at(&plane, corners, end));
-    let signs = [a.1.times(turn), b.1.times(turn)];
-    let in_plane = signs == [Sign::Zero; 2];
-    if in_plane {
-        if !find_doubled {
-            return None;
-        }
-    } else {
+    let in_plane = is_own_plane(view, segment, triangle) || {
+        let plane = sight.triangle_plane(corners);
+        let [a, b] = ends.map(|end| sight.depth_at(&plane, corners, end));
+        let signs = [a.1.times(turn), b.1.times(turn)];
         let cut = || sight.cut(ends, CutPlane::Triangle(corners), [a.0, b.0]);
-        if !range.keep(view, ends, signs, cut) {
+        let in_plane = signs == [Sign::Zero; 2];
+        if !in_plane && !range.keep(view, ends, signs, cut) {
             return None;
         }
+        in_plane
+    };
+    if in_plane && !find_doubled {
+        return None;
     }
 
     let (cover, border) = within_image(view, segment, triangle, near_signs, range)?;
@@ -233,6 +233,15 @@ fn within_image(
     };
     let cover = Cover { from: range.from, to: range.to, sides };
     Some((cover, along.map(|side| [corners[side], corners[(side + 1) % 3]])))
+}
+
+/// Whether a segment is a line of intersection of faces in a triangle's plane: no sign need be asked.
+#[inline]
+fn is_own_plane(view: &ViewedScene, segment: &Segment, triangle: u32) -> bool {
+    let scene = view.scene();
+    scene
+        .intersection(segment.edge)
+        .is_some_and(|line| scene.intersections().is_in_plane_of(line, triangle))
 }
 
 /// The side of the segment's image on which a vertex lies that is not on it.

@@ -1,0 +1,113 @@
+//! Which side of a triangle's plane a point lies on, whoever looks at it.
+
+use super::sight::{PlaneThrough, fits_filter};
+use super::{Sign, exact};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Sizes of coordinates for which `robust::orient3d` is exact: its products of three and their
+/// rounding errors neither overflow nor vanish.
+const ROBUST_WINDOW: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+
+/// Points in space; answers questions that do not depend on an eye.
+#[derive(Debug, Clone, Copy)]
+pub struct Solid<'a> {
+    positions: &'a [DVec3],
+    in_window: bool,
+    is_robust: bool,
+}
+
+impl<'a> Solid<'a> {
+    /// The points of `positions`, all finite. O(points).
+    pub fn new(positions: &'a [DVec3]) -> Self {
+        let robust = |x: f64| x == 0.0 || ROBUST_WINDOW.contains(&x.abs());
+        let positions_par = || positions.par_iter().with_min_len(1 << 14);
+        Self {
+            positions,
+            in_window: positions_par().all(fits_filter),
+            is_robust: positions_par().all(|p| robust(p.x) && robust(p.y) && robust(p.z)),
+        }
+    }
+
+    /// The points.
+    pub fn positions(&self) -> &'a [DVec3] {
+        self.positions
+    }
+
+    #[inline]
+    fn position(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    /// The plane of a triangle, for [`side`](Self::side).
+    #[inline]
+    pub fn plane(&self, triangle: [u32; 3]) -> PlaneThrough {
+        let [p, q, r] = triangle.map(|corner| self.position(corner));
+        Self::plane_through(p, q, r)
+    }
+
+    /// The same by the positions of the corners.
+    #[inline(always)]
+    pub fn plane_through(p: DVec3, q: DVec3, r: DVec3) -> PlaneThrough {
+        PlaneThrough::new(q - p, r - p, p)
+    }
+
+    /// The side of a point when the filter is certain of it: 1, −1, or 0 for unknown.
+    #[inline(always)]
+    pub fn certain_side(&self, plane: &PlaneThrough, point: DVec3) -> i32 {
+        let estimate = plane.negated_at(point);
+        let side = i32::from(estimate.value > estimate.error)
+            - i32::from(estimate.value < -estimate.error);
+        if self.in_window { side } else { 0 }
+    }
+
+    /// The side of `x`: the sign of `−(q − p) × (r − p) · (x − p)`, with the plane of the triangle.
+    #[inline]
+    pub fn side(&self, plane: &PlaneThrough, triangle: [u32; 3], x: u32) -> Sign {
+        let estimate = plane.negated_at(self.position(x));
+        match estimate.sign() {
+            Some(sign) if self.in_window => sign,
+            _ => self.exact_side(triangle, x),
+        }
+    }
+
+    /// The side of `x` without a plane at hand.
+    pub fn side_of(&self, triangle: [u32; 3], x: u32) -> Sign {
+        self.side(&self.plane(triangle), triangle, x)
+    }
+
+    #[cold]
+    fn exact_side(&self, triangle: [u32; 3], x: u32) -> Sign {
+        let [p, q, r] = triangle.map(|v| self.position(v));
+        let x = self.position(x);
+        if self.is_robust {
+            let [p, q, r, x] = [p, q, r, x].map(|p| robust::Coord3D { x: p.x, y: p.y, z: p.z });
+            return Sign::of(robust::orient3d(p, q, r, x));
+        }
+        let [volume, _] = exact::point_volumes(p, q, r, [x, x]);
+        exact::sign(&volume).flipped()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    #[test]
+    fn filter_robust_and_integers_agree_on_the_side() {
+        let near = |i: u32| f64::from(i % 3) * f64::EPSILON;
+        for i in 0..27 {
+            let x = dvec3(0.3 + near(i), 0.3 + near(i / 3), 0.4 + near(i / 9));
+            let points = [DVec3::X, DVec3::Y, DVec3::Z, x];
+            let solid = Solid::new(&points);
+            let triangle = [0, 1, 2];
+            let [volume, _] = exact::point_volumes(points[0], points[1], points[2], [x, x]);
+            let truth = exact::sign(&volume).flipped();
+            assert_eq!(solid.side_of(triangle, 3), truth, "{x}");
+            assert_eq!(solid.exact_side(triangle, 3), truth, "{x}");
+            let without = Solid { is_robust: false, ..solid };
+            assert_eq!(without.exact_side(triangle, 3), truth, "{x}");
+        }
+    }
+}
