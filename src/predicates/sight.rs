@@ -55,8 +55,8 @@ pub struct PlaneThrough {
 impl PlaneThrough {
     /// The plane through `base`, `base + a` and `base + b`; both vectors must be differences of two
     /// points, rounded once.
-    #[inline(always)]
-    pub(crate) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
+    #[inline]
+    pub(super) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
         let (a_size, b_size) = (a.abs(), b.abs());
         Self {
             normal: a.cross(b),
@@ -69,7 +69,7 @@ impl PlaneThrough {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn negated_at(&self, x: DVec3) -> Estimate {
         let d = x - self.base;
         Estimate {
