@@ -14,7 +14,7 @@
 //! named by what makes it, so that neighboring triangles agree on it.
 
 use super::diagonals::Diagonals;
-use crate::predicates::{PlaneThrough, Sign, Solid};
+use crate::predicates::{QuickPlane, Sign, Solid};
 use glam::DVec3;
 
 /// Where a line of intersection ends, by vertex numbers; sides have the lower number first.
@@ -76,14 +76,14 @@ enum Location {
 pub(super) struct Prepared {
     corners: [u32; 3],
     points: [DVec3; 3],
-    plane: PlaneThrough,
+    plane: QuickPlane,
 }
 
 impl Prepared {
     #[inline]
     pub(super) fn new(solid: &Solid, corners: [u32; 3]) -> Self {
         let points = corners.map(|corner| solid.positions()[corner as usize]);
-        Self { corners, points, plane: Solid::plane_through(points[0], points[1], points[2]) }
+        Self { corners, points, plane: solid.quick_plane(points[0], points[1], points[2]) }
     }
 }
 
@@ -123,12 +123,12 @@ pub(super) fn are_apart(
         | bit(2, b2, a2);
     let at = |corner: u32| solid.positions()[corner as usize];
     let (p, q, r) = (at(b0), at(b1), at(b2));
-    let side = |plane: &PlaneThrough, point: DVec3| solid.certain_side(plane, point);
+    let side = |plane: &QuickPlane, point: DVec3| solid.certain_side(plane, point);
     let sides = [side(&a.plane, p), side(&a.plane, q), side(&a.plane, r)];
     if is_one_side(sides, of_b) {
         return true;
     }
-    let plane = Solid::plane_through(p, q, r);
+    let plane = solid.quick_plane(p, q, r);
     let [u, v, w] = a.points;
     let sides = [side(&plane, u), side(&plane, v), side(&plane, w)];
     is_one_side(sides, of_a)
@@ -167,7 +167,7 @@ fn leave_apart(
     let next = |shared: u32| (shared.trailing_zeros() as usize + 1) % 3;
     let (from, c) = (next(shared_of_a), next(shared_of_b));
     let (to, v) = ((from + 1) % 3, (c + 2) % 3);
-    let plane = PlaneThrough::new(b[c] - b[v], a[from] - b[v], b[v]);
+    let plane = solid.quick_plane(b[v], b[c], a[from]);
     let side = solid.certain_side(&plane, a[to]);
     side != 0 && sides[from] == side && sides[to] == -side
 }

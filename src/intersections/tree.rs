@@ -73,11 +73,12 @@ impl Boxes {
                 gaps[lane] = if gap > gaps[lane] { gap } else { gaps[lane] };
             }
         }
-        let mut bits = 0;
-        for (lane, gap) in gaps.into_iter().enumerate() {
-            bits |= u32::from(gap <= 0.0) << lane;
+        // One bit a lane, all at once.
+        let mut bits = [0; WIDTH];
+        for lane in 0..WIDTH {
+            bits[lane] = if gaps[lane] <= 0.0 { 1 << lane } else { 0 };
         }
-        bits
+        bits.into_iter().fold(0, |all, bit| all | bit)
     }
 }
 

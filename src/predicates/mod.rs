@@ -46,7 +46,7 @@ mod volume;
 pub use cut::{Cut, CutPlane};
 pub use pierced::{Homogeneous, PiercePoint};
 pub use sight::{PlaneThrough, Sight, Slab, Viewpoint};
-pub use volume::Solid;
+pub use volume::{QuickPlane, Solid};
 
 use glam::{DVec2, DVec3};
 

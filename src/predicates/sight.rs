@@ -62,8 +62,8 @@ pub struct Slab {
 impl PlaneThrough {
     /// The plane through `base`, `base + a` and `base + b`; both vectors must be differences of two
     /// points, rounded once.
-    #[inline(always)]
-    pub(crate) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
+    #[inline]
+    pub(super) fn new(a: DVec3, b: DVec3, base: DVec3) -> Self {
         let (a_size, b_size) = (a.abs(), b.abs());
         Self {
             normal: a.cross(b),
@@ -83,7 +83,7 @@ impl PlaneThrough {
         3.0 * longest.max_element()
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn negated_at(&self, x: DVec3) -> Estimate {
         let d = x - self.base;
         Estimate {

@@ -1,7 +1,7 @@
 //! Which side of a triangle's plane a point lies on, whoever looks at it.
 
 use super::sight::{PlaneThrough, fits_filter};
-use super::{Sign, exact};
+use super::{Sign, TRIPLE_PRODUCT_ERROR, exact};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -15,6 +15,16 @@ pub struct Solid<'a> {
     positions: &'a [DVec3],
     in_window: bool,
     is_robust: bool,
+    /// No difference of coordinates is larger; infinite when bounds of errors do not hold.
+    reach: f64,
+}
+
+/// A plane with one bound of the error for all points of a scene.
+#[derive(Debug, Clone, Copy)]
+pub struct QuickPlane {
+    normal: DVec3,
+    base: DVec3,
+    error: f64,
 }
 
 impl<'a> Solid<'a> {
@@ -22,9 +32,12 @@ impl<'a> Solid<'a> {
     pub fn new(positions: &'a [DVec3]) -> Self {
         let robust = |x: f64| x == 0.0 || ROBUST_WINDOW.contains(&x.abs());
         let positions_par = || positions.par_iter().with_min_len(1 << 14);
+        let in_window = positions_par().all(fits_filter);
+        let largest = positions_par().map(|p| p.abs().max_element()).reduce(|| 0.0, f64::max);
         Self {
             positions,
-            in_window: positions_par().all(fits_filter),
+            in_window,
+            reach: if in_window { 2.0 * largest } else { f64::INFINITY },
             is_robust: positions_par().all(|p| robust(p.x) && robust(p.y) && robust(p.z)),
         }
     }
@@ -43,22 +56,28 @@ impl<'a> Solid<'a> {
     #[inline]
     pub fn plane(&self, triangle: [u32; 3]) -> PlaneThrough {
         let [p, q, r] = triangle.map(|corner| self.position(corner));
-        Self::plane_through(p, q, r)
-    }
-
-    /// The same by the positions of the corners.
-    #[inline(always)]
-    pub fn plane_through(p: DVec3, q: DVec3, r: DVec3) -> PlaneThrough {
         PlaneThrough::new(q - p, r - p, p)
     }
 
-    /// The side of a point when the filter is certain of it: 1, −1, or 0 for unknown.
+    /// A plane through three points for [`certain_side`](Self::certain_side).
     #[inline(always)]
-    pub fn certain_side(&self, plane: &PlaneThrough, point: DVec3) -> i32 {
-        let estimate = plane.negated_at(point);
-        let side = i32::from(estimate.value > estimate.error)
-            - i32::from(estimate.value < -estimate.error);
-        if self.in_window { side } else { 0 }
+    pub fn quick_plane(&self, base: DVec3, q: DVec3, r: DVec3) -> QuickPlane {
+        let (a, b) = (q - base, r - base);
+        let (a_size, b_size) = (a.abs().max_element(), b.abs().max_element());
+        // The terms of a component of the normal are at most twice the product of these sizes, and
+        // there are three components; the rest covers the rounding of the bound.
+        let error = TRIPLE_PRODUCT_ERROR * 8.0 * a_size * b_size * self.reach;
+        QuickPlane { normal: a.cross(b), base, error }
+    }
+
+    /// The side of a point when floating point is certain of it: 1, −1, or 0 for unknown.
+    ///
+    /// One bound serves for all points of the scene, which is enough to tell most that are not
+    /// nearly in the plane.
+    #[inline(always)]
+    pub fn certain_side(&self, plane: &QuickPlane, point: DVec3) -> i32 {
+        let value = plane.normal.dot(point - plane.base);
+        i32::from(value < -plane.error) - i32::from(value > plane.error)
     }
 
     /// The side of `x`: the sign of `−(q − p) × (r − p) · (x − p)`, with the plane of the triangle.
