@@ -49,16 +49,18 @@
 //! | 101,760 | 152,960 | 113,959 | 51,393 | 1 | 2,108,630 |
 //! | 998,000 | 1,498,000 | 389,362 | 1,126,541 | 1 | 20,964,609 |
 
+mod ahead;
 mod box_join;
 mod cutting;
 mod doubled;
 mod near;
 mod parity;
+mod places;
 mod propagate;
 mod start;
 mod trace;
 
-use super::index::{ImageIndex, Place, Rounding};
+use super::index::{Place, Rounding};
 use super::roberts;
 use super::segment::Segment;
 use super::shadow::{Shadow, shadow};
@@ -67,14 +69,15 @@ use super::{Counts, Settings};
 use crate::classify::ViewedScene;
 use crate::predicates::CutPlane;
 use crate::visibility::Visibility;
+use ahead::cutting_edges_ahead;
 use cutting::Stars;
 use doubled::Partners;
-use near::{NearTriangles, Places};
+use near::near_triangles;
+use places::Places;
 use propagate::{Base, Levels};
 use rayon::prelude::*;
 use start::{is_plain, layers_beyond, local_layers};
-use std::sync::Mutex;
-use trace::{Change, Surroundings, Trace, Tracer};
+use trace::{Change, Surroundings, Trace};
 
 pub(super) use cutting::Sides;
 
@@ -90,27 +93,24 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     let sides = Sides::new(view);
     let (cutting, is_even) = sides.cutting_edges(view);
     let rounding = Rounding::new(view);
-    let drawn = segments.iter().flatten();
-    let cutting_index = ImageIndex::of_items(view, drawn, cutting.len(), None, |edge| {
-        let points = cutting[edge as usize].ends.map(|end| view.image()[end as usize]);
-        let bounds = rounding.bounds(points.map(|p| p.image()), points.map(|p| p.depth));
-        Place::Within(bounds.reaching(f64::INFINITY))
-    });
     let Some(places) = Places::new(view, &rounding, &segments) else {
         // No edge is drawn, or numbers are so large that their differences are not finite.
         return roberts::solve(view, settings);
     };
+    let boxes = places.of_segments(&rounding, &segments);
+    let ahead = cutting_edges_ahead(view, &rounding, &places, &segments, &boxes, &cutting);
     let tolerance = settings.contact_tolerance;
-    let near = NearTriangles::new(view, &rounding, &places, &segments, tolerance);
+    let near = near_triangles(view, &places, &segments, &boxes, tolerance);
+    drop(boxes);
     let cut_by_near_plane = triangles_that_the_near_plane_cuts(view, &rounding);
     let around = Surroundings {
         cutting: &cutting,
-        cutting_index: &cutting_index,
+        ahead: &ahead,
         near: &near,
+        rounding: &rounding,
         cut_by_near_plane: &cut_by_near_plane,
         contact_tolerance: settings.contact_tolerance,
     };
-    let tracers = Tracers::new(&around);
     let mut is_end = vec![false; view.scene().mesh().positions().len()];
     for &end in segments.iter().flatten().flat_map(|segment| &segment.ends) {
         is_end[end as usize] = true;
@@ -124,10 +124,7 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     let traced: Vec<Chunk> = segments
         .par_chunks(CHUNK)
         .enumerate()
-        .map(|(i, chunk)| {
-            let first = i * CHUNK;
-            tracers.with(|tracer| Chunk::trace(view, &around, &neighbors, first, chunk, tracer))
-        })
+        .map(|(i, chunk)| Chunk::trace(view, &around, &neighbors, i * CHUNK, chunk))
         .collect();
 
     let mut starts = Starts::new(view, &segments, &traced);
@@ -193,28 +190,6 @@ fn triangles_that_the_near_plane_cuts(view: &ViewedScene, rounding: &Rounding) -
         .collect()
 }
 
-/// Work spaces of the threads.
-struct Tracers<'s> {
-    around: &'s Surroundings<'s>,
-    idle: Mutex<Vec<Tracer>>,
-}
-
-impl<'s> Tracers<'s> {
-    fn new(around: &'s Surroundings<'s>) -> Self {
-        Self { around, idle: Mutex::new(Vec::new()) }
-    }
-
-    fn with<T>(&self, work: impl FnOnce(&mut Tracer) -> T) -> T {
-        let idle = self.idle.lock().ok().and_then(|mut idle| idle.pop());
-        let mut tracer = idle.unwrap_or_else(|| Tracer::new(self.around));
-        let result = work(&mut tracer);
-        if let Ok(mut idle) = self.idle.lock() {
-            idle.push(tracer);
-        }
-        result
-    }
-}
-
 /// What is around vertices.
 struct Neighbors<'n> {
     sides: &'n Sides<'n>,
@@ -259,12 +234,11 @@ impl Chunk {
         neighbors: &Neighbors,
         first: usize,
         segments: &[Option<Segment>],
-        tracer: &mut Tracer,
     ) -> Self {
         let mut chunk = Self { trace: Trace::default(), ends: Vec::new(), links: Vec::new() };
         for (i, segment) in segments.iter().enumerate() {
             let link = segment.as_ref().map_or_else(Link::default, |segment| Link {
-                total: tracer.trace(view, around, first + i, segment, &mut chunk.trace),
+                total: chunk.trace.follow(view, around, first + i, segment),
                 local: neighbors.local_layers(view, segment),
             });
             chunk.links.push(link);

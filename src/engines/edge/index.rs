@@ -298,11 +298,6 @@ impl ImageIndex {
         self.rounding.bounds(segment.image, segment.depth)
     }
 
-    /// The box of the images of some points in front of the eye.
-    pub(super) fn bounds<const N: usize>(&self, points: [ImagePoint; N]) -> Bounds {
-        self.rounding.bounds(points.map(ImagePoint::image), points.map(|p| p.depth))
-    }
-
     /// Whether every cell along the segment is covered in front of all of it.
     pub(super) fn hides(&self, segment: &Segment) -> bool {
         if self.covered_from.is_empty() {
@@ -739,7 +734,7 @@ impl Visitor {
             self.seen.fill(0);
             self.segment = 1;
         }
-        let separation = Separation::new(index, segment, bounds);
+        let separation = Separation::new(&index.rounding, segment);
         let own = Entry::new(0, bounds);
         let (seen, number) = (&mut self.seen, self.segment);
         index.levels.iter().rev().filter(|level| level.used).any(|level| {
@@ -768,7 +763,7 @@ impl Visitor {
 ///
 /// A corner that is one of the segment's own ends lies on the line and does not count: an item
 /// that meets the line there only covers no more than a point.
-struct Separation<'i> {
+pub(super) struct Separation<'i> {
     rounding: &'i Rounding,
     ends: [u32; 2],
     start: DVec2,
@@ -777,19 +772,15 @@ struct Separation<'i> {
 }
 
 impl<'i> Separation<'i> {
-    fn new(index: &'i ImageIndex, segment: &Segment, bounds: &Bounds) -> Self {
+    pub(super) fn new(rounding: &'i Rounding, segment: &Segment) -> Self {
         let [a, b] = segment.image;
-        Self {
-            rounding: &index.rounding,
-            ends: segment.ends,
-            start: a,
-            along: b - a,
-            size: bounds.low.abs().max(bounds.high.abs()).element_sum(),
-        }
+        let size = a.abs().max(b.abs()).element_sum();
+        Self { rounding, ends: segment.ends, start: a, along: b - a, size }
     }
 
+    /// Whether an item with these corners is certainly to one side.
     #[inline]
-    fn apart<const N: usize>(&self, corners: [u32; N], points: [ImagePoint; N]) -> bool {
+    pub(super) fn apart<const N: usize>(&self, corners: [u32; N], points: [ImagePoint; N]) -> bool {
         let points = points.map(ImagePoint::image);
         let offsets = points.map(|p| p - self.start);
         let farthest = points.iter().fold(DVec2::ZERO, |far, p| far.max(p.abs()));

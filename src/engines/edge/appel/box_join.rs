@@ -55,6 +55,23 @@ pub(super) struct LatticeBox {
 }
 
 impl LatticeBox {
+    /// The same with all depths made one.
+    #[must_use]
+    pub(super) fn flat(self) -> Self {
+        let Place { low, high } = Place { low: self.low, high: self.high }.flat();
+        Self { low, high, ..self }
+    }
+
+    /// The farthest place in depth.
+    pub(super) fn farthest(&self) -> u32 {
+        self.high[2]
+    }
+
+    /// The number of what it is the box of.
+    pub(super) fn number(&self) -> u32 {
+        self.number
+    }
+
     #[inline]
     fn meets(&self, other: &Self) -> bool {
         self.low[0] <= other.high[0]
@@ -124,6 +141,18 @@ impl Place {
             }
         }
         all
+    }
+
+    /// The nearest place in depth.
+    pub(super) fn nearest(&self) -> u32 {
+        self.low[2]
+    }
+
+    /// The same with all depths made one.
+    #[must_use]
+    pub(super) fn flat(self) -> Self {
+        let flat = |[x, y, _]: [u32; 3]| [x, y, 1];
+        Self { low: flat(self.low), high: flat(self.high) }
     }
 
     /// The box of what has this number; `None` when it lies beside the lattice.
@@ -213,6 +242,36 @@ pub(super) fn meeting_pairs<R: Send>(
         })
         .collect();
     parts.into_iter().flatten().collect()
+}
+
+/// For each item of the first set items of the second, in rising order, in one flat array.
+#[derive(Debug, Default)]
+pub(super) struct Pairs {
+    starts: Vec<u32>,
+    seconds: Vec<u32>,
+}
+
+impl Pairs {
+    /// Sorts pairs of which the first numbers are below `n_first`.
+    pub(super) fn new(n_first: usize, mut pairs: Vec<(u32, u32)>) -> Self {
+        pairs.par_sort_unstable();
+        let mut starts = vec![0u32; n_first + 1];
+        for &(first, _) in &pairs {
+            starts[first as usize + 1] += 1;
+        }
+        for i in 0..n_first {
+            starts[i + 1] += starts[i];
+        }
+        Self { starts, seconds: pairs.into_iter().map(|(_, second)| second).collect() }
+    }
+
+    /// The items paired with one of the first set.
+    pub(super) fn of(&self, first: usize) -> &[u32] {
+        match self.starts.get(first..first + 2) {
+            Some(&[start, end]) => &self.seconds[start as usize..end as usize],
+            _ => &[],
+        }
+    }
 }
 
 /// A cube of the lattice: its lowest corner in units of its size, 2 to the power of `bits`.

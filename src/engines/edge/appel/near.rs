@@ -7,107 +7,35 @@
 //! Points in near contact lie behind the triangle on a sight line through it, so that its box needs
 //! to be made larger in depth only, if by much where the triangle is nearly edge-on.
 
-use super::super::index::Rounding;
 use super::super::segment::Segment;
-use super::box_join::{Lattice, LatticeBox, Place, box_of_all, meeting_pairs};
+use super::box_join::{LatticeBox, Pairs, meeting_pairs};
 use super::cutting::is_counted;
-use crate::classify::{ImagePoint, ViewedScene};
+use super::places::Places;
+use crate::classify::ViewedScene;
 use crate::predicates::{Sign, Viewpoint};
-use glam::DVec3;
 use rayon::prelude::*;
 
-/// The triangles near each segment.
-#[derive(Debug, Default)]
-pub(super) struct NearTriangles {
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl NearTriangles {
-    /// Finds them among those that lie wholly beyond the near plane.
-    ///
-    /// Expected cost: segments and triangles, once.
-    pub(super) fn new(
-        view: &ViewedScene,
-        rounding: &Rounding,
-        places: &Places,
-        segments: &[Option<Segment>],
-        contact_tolerance: f64,
-    ) -> Self {
-        let ends: Vec<[u32; 2]> = segments
-            .par_iter()
-            .map(|segment| segment.as_ref().map_or([0; 2], |segment| segment.ends))
-            .collect();
-        let near = Near { view, contact_tolerance, ends, places };
-        let first: Vec<LatticeBox> = segments
-            .par_iter()
-            .enumerate()
-            .filter_map(|(i, segment)| {
-                let bounds = rounding.bounds(segment.as_ref()?.image, segment.as_ref()?.depth);
-                places.lattice.place(bounds.corners()).of(i as u32)
-            })
-            .collect();
-        let second = |triangle| near.box_of_triangle(triangle);
-        let n_triangles = view.scene().triangles().len();
-        let mut pairs = meeting_pairs(&first, n_triangles, second, |triangle, meeting, found| {
-            near.push_meetings(triangle, meeting, found);
-        });
-        pairs.par_sort_unstable();
-        let mut starts = vec![0u32; segments.len() + 1];
-        for &(segment, _) in &pairs {
-            starts[segment as usize + 1] += 1;
-        }
-        for i in 0..segments.len() {
-            starts[i + 1] += starts[i];
-        }
-        Self { starts, triangles: pairs.into_iter().map(|(_, triangle)| triangle).collect() }
-    }
-
-    /// The triangles near one segment, by its number.
-    pub(super) fn of(&self, segment: usize) -> &[u32] {
-        match self.starts.get(segment..segment + 2) {
-            Some(&[start, end]) => &self.triangles[start as usize..end as usize],
-            _ => &[],
-        }
-    }
-}
-
-/// Where the images and the depths of the vertices lie on a lattice over all segments.
-pub(super) struct Places {
-    pub lattice: Lattice,
-    vertices: Vec<Place>,
-}
-
-impl Places {
-    /// Lays out a lattice whose cells are about as deep as they are wide; `None` when there are no
-    /// segments. O(segments + vertices).
-    pub(super) fn new(
-        view: &ViewedScene,
-        rounding: &Rounding,
-        segments: &[Option<Segment>],
-    ) -> Option<Self> {
-        let bounds = |segment: &Segment| rounding.bounds(segment.image, segment.depth).corners();
-        let boxes: Vec<[DVec3; 2]> = segments
-            .par_chunks(1 << 12)
-            .map(|chunk| box_of_all(chunk.iter().flatten().map(bounds)))
-            .collect();
-        let all = box_of_all(boxes.into_iter());
-        let units_per_image_unit = match view.sight().viewpoint() {
-            Viewpoint::Eye(_) => 0.5 * (all[0].z + all[1].z),
-            Viewpoint::Direction(_) => 1.0,
-        };
-        let lattice = Lattice::over(all, units_per_image_unit)?;
-        let place = |point: &ImagePoint| {
-            lattice.place(rounding.bounds([point.image()], [point.depth]).corners())
-        };
-        Some(Self { lattice, vertices: view.image().par_iter().map(place).collect() })
-    }
-
-    /// The place of a triangle.
-    #[inline]
-    pub(super) fn around(&self, corners: [u32; 3]) -> Place {
-        Place::around(corners.map(|corner| &self.vertices[corner as usize]))
-    }
+/// The triangles near each segment, of those that lie wholly beyond the near plane.
+///
+/// `boxes` are those of the segments. Expected cost: segments and triangles, once.
+pub(super) fn near_triangles(
+    view: &ViewedScene,
+    places: &Places,
+    segments: &[Option<Segment>],
+    boxes: &[LatticeBox],
+    contact_tolerance: f64,
+) -> Pairs {
+    let ends: Vec<[u32; 2]> = segments
+        .par_iter()
+        .map(|segment| segment.as_ref().map_or([0; 2], |segment| segment.ends))
+        .collect();
+    let near = Near { view, contact_tolerance, ends, places };
+    let second = |triangle| near.box_of_triangle(triangle);
+    let n_triangles = view.scene().triangles().len();
+    let pairs = meeting_pairs(boxes, n_triangles, second, |triangle, meeting, found| {
+        near.push_meetings(triangle, meeting, found);
+    });
+    Pairs::new(segments.len(), pairs)
 }
 
 struct Near<'n, 'a> {

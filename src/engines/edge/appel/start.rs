@@ -5,7 +5,7 @@ use super::super::segment::Segment;
 use super::super::shadow::{Sides, side_of};
 use super::box_join::{LatticeBox, Place, meeting_pairs};
 use super::cutting::{Stars, is_counted};
-use super::near::Places;
+use super::places::Places;
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;
 
@@ -118,10 +118,7 @@ pub(super) fn layers_beyond<'s>(
     let questions: Vec<(Option<&Segment>, usize)> = ends.collect();
     let mut layers = vec![[0; 2]; questions.len()];
     // Whether a triangle is in front is asked of it, so that depths are of no use here.
-    let flat = |place: Place, number: u32| {
-        Place { low: [place.low[0], place.low[1], 1], high: [place.high[0], place.high[1], 1] }
-            .of(number)
-    };
+    let flat = |place: Place, number: u32| place.flat().of(number);
     let first: Vec<LatticeBox> = (0..)
         .zip(&questions)
         .filter_map(|(i, &(segment, end))| {

@@ -15,13 +15,13 @@
 //! Where a cutting edge *touches* the segment its triangles have planes through that point; they
 //! cover on one side of it or neither, which is what the rule for piercing says.
 
-use super::super::index::{Bounds, ImageIndex, Visitor};
+use super::super::index::{Bounds, Rounding};
 use super::super::segment::Segment;
 use super::super::shadow::{Shadow, Sides, shadow, side_of};
+use super::box_join::Pairs;
 use super::cutting::CuttingEdge;
-use super::near::NearTriangles;
 use super::start::add;
-use crate::classify::ViewedScene;
+use crate::classify::{ImagePoint, ViewedScene};
 use crate::predicates::{Cut, CutPlane, Estimate, Sign};
 use std::cmp::Ordering;
 
@@ -39,20 +39,16 @@ pub(super) struct Change {
 pub(super) struct Surroundings<'s> {
     /// The cutting edges.
     pub cutting: &'s [CuttingEdge],
-    /// Where they are in the image.
-    pub cutting_index: &'s ImageIndex,
+    /// Those that each segment may pass behind.
+    pub ahead: &'s Pairs,
     /// The triangles near each segment in space.
-    pub near: &'s NearTriangles,
+    pub near: &'s Pairs,
+    /// How images are rounded.
+    pub rounding: &'s Rounding,
     /// The triangles that the near plane cuts.
     pub cut_by_near_plane: &'s [u32],
     /// See [`super::super::Settings`].
     pub contact_tolerance: f64,
-}
-
-/// Work space of one thread, and what the segments traced with it have met.
-#[derive(Debug)]
-pub(super) struct Tracer {
-    visitor: Visitor,
 }
 
 /// What was found along one segment.
@@ -68,51 +64,43 @@ pub(super) struct Trace {
     pub triangles_tested: u64,
 }
 
-impl Tracer {
-    /// Work space for queries in `around`.
-    pub(super) fn new(around: &Surroundings) -> Self {
-        Self { visitor: Visitor::new(Some(around.cutting_index)) }
-    }
-
+impl Trace {
     /// Appends what changes the number of layers along `segment`; returns the change of the layers
     /// that are carried along, from its first end to its last. `number` is the segment's own.
-    pub(super) fn trace(
+    pub(super) fn follow(
         &mut self,
         view: &ViewedScene,
         around: &Surroundings,
         number: usize,
         segment: &Segment,
-        trace: &mut Trace,
     ) -> [i32; 2] {
         let mut total = [0; 2];
-        let bounds = around.cutting_index.bounds_of(segment);
-        let ends_of = |edge: u32| around.cutting[edge as usize].ends;
-        let index = around.cutting_index;
-        self.visitor.any_within(index, view, segment, &bounds, ends_of, |edge| {
-            trace.crossings_tested += 1;
+        for &edge in around.ahead.of(number) {
+            self.crossings_tested += 1;
             let edge = &around.cutting[edge as usize];
-            if let Some(change) = crossing(view, index, segment, edge, &mut trace.irregular) {
+            if let Some(change) =
+                crossing(view, around.rounding, segment, edge, &mut self.irregular)
+            {
                 add(&mut total, change.by);
-                trace.changes.push(change);
+                self.changes.push(change);
             }
-            false
-        });
+        }
 
         for &triangle in around.near.of(number) {
-            trace.triangles_tested += 1;
-            if let Some(change) = meeting(view, around, segment, triangle, trace) {
+            self.triangles_tested += 1;
+            if let Some(change) = meeting(view, around, segment, triangle, self) {
                 add(&mut total, change.by);
-                trace.changes.push(change);
+                self.changes.push(change);
             }
         }
 
         for &triangle in around.cut_by_near_plane {
-            trace.triangles_tested += 1;
+            self.triangles_tested += 1;
             let tolerance = around.contact_tolerance;
             if let Some(Shadow::Covers(cover)) = shadow(view, segment, triangle, tolerance, false) {
                 let by = cover.sides.counts();
-                trace.changes.push(Change { at: cover.from, by });
-                trace.changes.push(Change { at: cover.to, by: by.map(|n| -n) });
+                self.changes.push(Change { at: cover.from, by });
+                self.changes.push(Change { at: cover.to, by: by.map(|n| -n) });
             }
         }
         total
@@ -131,7 +119,7 @@ fn is_kept(view: &ViewedScene, segment: &Segment, cut: &Cut) -> bool {
 /// Also notes an end of the segment whose image lies on a nearer cutting edge's.
 fn crossing(
     view: &ViewedScene,
-    index: &ImageIndex,
+    rounding: &Rounding,
     segment: &Segment,
     edge: &CuttingEdge,
     irregular: &mut Vec<u32>,
@@ -141,7 +129,7 @@ fn crossing(
     let plane = sight.sight_plane(p, q);
     let [at_a, at_b] = [a, b].map(|x| sight.turn_at(&plane, p, q, x));
     for (x, at_x) in [(a, at_a), (b, at_b)] {
-        if at_x.1 == Sign::Zero && x != p && x != q && lies_over(view, index, edge, x) {
+        if at_x.1 == Sign::Zero && x != p && x != q && lies_over(view, rounding, edge, x) {
             irregular.push(x);
         }
     }
@@ -173,11 +161,11 @@ fn crossing(
 }
 
 /// Whether an edge lies strictly in front of a vertex on its plane of sight; in doubt, yes.
-fn lies_over(view: &ViewedScene, index: &ImageIndex, edge: &CuttingEdge, vertex: u32) -> bool {
+fn lies_over(view: &ViewedScene, rounding: &Rounding, edge: &CuttingEdge, vertex: u32) -> bool {
     let bounds = |vertices: &[u32]| -> Option<Bounds> {
         let [first, last] =
             [*vertices.first()?, *vertices.last()?].map(|v| view.image()[v as usize]);
-        Some(index.bounds([first, last]))
+        Some(rounding.bounds([first, last].map(ImagePoint::image), [first.depth, last.depth]))
     };
     let apart = match (bounds(&edge.ends), bounds(&[vertex])) {
         (Some(edge), Some(vertex)) => !edge.overlaps(&vertex),
