@@ -60,8 +60,8 @@ mod propagate;
 mod start;
 mod trace;
 
-use super::index::{Place, Rounding};
 use super::roberts;
+use super::rounding::{Place, Rounding};
 use super::segment::Segment;
 use super::shadow::{Shadow, shadow};
 use super::sweep::Sweep;

@@ -17,19 +17,14 @@
 //! Nothing here decides visibility: boxes and depths are rounded outwards, so that at worst a
 //! triangle is offered in vain.
 
+mod covered;
+
 use super::Settings;
+use super::rounding::{Bounds, Place, Rounding, Separation};
 use super::segment::Segment;
-use crate::classify::{ImagePoint, ViewedScene};
-use crate::predicates::Sign;
-use glam::{DVec2, DVec3, dvec2};
+use crate::classify::ViewedScene;
+use glam::{DVec2, dvec2};
 use rayon::prelude::*;
-
-/// Image coordinates are within this, times the square of their distance from the center plus one,
-/// of the truth: they take about a dozen roundings of numbers that large.
-const IMAGE_ERROR: f64 = 32.0 * f64::EPSILON;
-
-/// Depths are within this part of the largest number that goes into them.
-const DEPTH_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// Images further out than this, as the tangent of the angle off the axis, share the border cells.
 const WIDEST_TANGENT: f64 = 8.0;
@@ -40,54 +35,6 @@ const TRIANGLES_PER_CELL: f64 = 4.0;
 
 /// Bounds of the number of cells of the finest level.
 const FINEST_CELLS: (f64, f64) = (16.0, (1 << 21) as f64);
-
-/// Triangles seen at a flatter angle than this sine are not used as covers of cells: the contact
-/// tolerance, divided by it, becomes a distance along the sight line.
-const MIN_COVER_SINE: f64 = 0.05;
-
-/// A box in the image and the range of depths in it, rounded outwards.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bounds {
-    low: DVec2,
-    high: DVec2,
-    nearest: f64,
-    farthest: f64,
-}
-
-impl Bounds {
-    /// The same box with depths up to `farthest`.
-    #[must_use]
-    pub(super) fn reaching(self, farthest: f64) -> Self {
-        Self { farthest, ..self }
-    }
-
-    /// The same box with all depths up to its farthest.
-    #[must_use]
-    pub(super) fn with_all_nearer(self) -> Self {
-        Self { nearest: f64::NEG_INFINITY, ..self }
-    }
-
-    /// The lowest and the highest corner, with depths as third coordinates.
-    pub(super) fn corners(&self) -> [DVec3; 2] {
-        [self.low.extend(self.nearest), self.high.extend(self.farthest)]
-    }
-
-    /// Whether the boxes share a point of the image.
-    pub(super) fn overlaps(&self, other: &Self) -> bool {
-        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
-    }
-}
-
-/// Where an item goes in an index.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
-    /// It is of no interest.
-    Nowhere,
-    /// It is offered to every segment by other means: see [`ImageIndex::everywhere`].
-    Everywhere,
-    /// Into the cells that its box touches.
-    Within(Bounds),
-}
 
 /// An item in a cell, with its box rounded outwards, so that most need not be looked up.
 #[derive(Debug, Clone, Copy, Default)]
@@ -140,66 +87,6 @@ struct Placed {
     item: u32,
     level: u32,
     bounds: Bounds,
-}
-
-/// Everything about the view that rounding outwards needs.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Rounding {
-    /// In orthographic projection the error does not depend on the place.
-    flat_error: Option<f64>,
-    depth_error: f64,
-}
-
-impl Rounding {
-    pub(super) fn new(view: &ViewedScene) -> Self {
-        let eye = view.camera().eye();
-        let largest = view
-            .sight()
-            .positions()
-            .par_iter()
-            .map(|&p| (p - eye).abs().element_sum() + p.abs().element_sum())
-            .reduce(|| 0.0, f64::max);
-        let flat_error = (!view.sight().has_near_plane()).then_some(IMAGE_ERROR * largest);
-        Self { flat_error, depth_error: DEPTH_ERROR * largest }
-    }
-
-    /// How far an image coordinate up to `size` in absolute value may be off.
-    pub(super) fn image_error(&self, size: f64) -> f64 {
-        self.flat_error.unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
-    }
-
-    /// The box of some points of the image with their depths.
-    pub(super) fn bounds<const N: usize>(&self, points: [DVec2; N], depths: [f64; N]) -> Bounds {
-        let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-        let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let error = self.image_error(low.abs().max(high.abs()).element_sum());
-        Bounds {
-            low: low - error,
-            high: high + error,
-            nearest: depths.iter().copied().fold(f64::INFINITY, f64::min) - self.depth_error,
-            farthest: depths.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth_error,
-        }
-    }
-
-    /// Where a triangle goes by its image: nowhere when it covers nothing, everywhere when the near
-    /// plane cuts it.
-    pub(super) fn place(&self, view: &ViewedScene, triangle: u32) -> Place {
-        if view.triangle_turns()[triangle as usize] == Sign::Zero {
-            return Place::Nowhere;
-        }
-        let corners = view.scene().triangles()[triangle as usize];
-        if view.near_plane_cuts() {
-            let signs = corners.map(|corner| view.sight().near_distance(corner).1);
-            if signs == [Sign::Negative; 3] {
-                return Place::Nowhere;
-            }
-            if signs.contains(&Sign::Negative) {
-                return Place::Everywhere;
-            }
-        }
-        let points = corners.map(|corner| view.image()[corner as usize]);
-        Place::Within(self.bounds(points.map(ImagePoint::image), points.map(|p| p.depth)))
-    }
 }
 
 /// One grid: `columns × rows` cells from the index's origin.
@@ -429,7 +316,7 @@ impl ImageIndex {
 
     /// Whether border cells stand for all that lies further out.
     fn has_border_cells(&self) -> bool {
-        self.rounding.flat_error.is_none()
+        self.rounding.is_unbounded()
     }
 
     fn column(&self, level: &Level, x: f64) -> u32 {
@@ -494,147 +381,6 @@ impl ImageIndex {
         }
         false
     }
-
-    /// For each cell of every level the smallest depth behind which one triangle, or one for each
-    /// of its parts, covers it wholly; infinite where none does.
-    fn find_covered_cells(
-        &self,
-        view: &ViewedScene,
-        near: &[Vec<Placed>],
-        contact_tolerance: f64,
-    ) -> Vec<f64> {
-        let parts: Vec<Vec<(u32, f64)>> = near
-            .par_iter()
-            .map(|near| {
-                let mut covered = Vec::new();
-                for placed in near.iter().filter(|placed| placed.level >= 2) {
-                    let push = |cell, depth| covered.push((cell, depth));
-                    self.cells_within(view, placed, contact_tolerance, push);
-                }
-                covered
-            })
-            .collect();
-        let mut covered_from = vec![f64::INFINITY; self.starts.len() - 1];
-        for &(cell, depth) in parts.iter().flatten() {
-            let from = &mut covered_from[cell as usize];
-            *from = from.min(depth);
-        }
-        // A cell is covered when its four parts are, and they are covered when it is.
-        for pair in self.levels.windows(2) {
-            for_parts(&pair[0], &pair[1], |cell, parts| {
-                let behind_parts = parts
-                    .iter()
-                    .map(|part| part.map_or(f64::NEG_INFINITY, |p| covered_from[p as usize]))
-                    .fold(f64::NEG_INFINITY, f64::max);
-                let from = &mut covered_from[cell as usize];
-                *from = from.min(behind_parts);
-            });
-        }
-        for pair in self.levels.windows(2).rev() {
-            for_parts(&pair[0], &pair[1], |cell, parts| {
-                let whole = covered_from[cell as usize];
-                for &part in parts.iter().flatten() {
-                    let from = &mut covered_from[part as usize];
-                    *from = from.min(whole);
-                }
-            });
-        }
-        covered_from
-    }
-
-    /// Calls `f` with cells that lie wholly within a triangle's image, of a level two finer than
-    /// its own, and the depth behind which the triangle certainly covers.
-    fn cells_within(
-        &self,
-        view: &ViewedScene,
-        placed: &Placed,
-        contact_tolerance: f64,
-        mut f: impl FnMut(u32, f64),
-    ) {
-        let bounds = &placed.bounds;
-        let corners = view.scene().triangles()[placed.item as usize];
-        let Some(sine) = sine_of_sight(view, corners) else {
-            return;
-        };
-        let depth = bounds.farthest + contact_tolerance / sine;
-        let level = &self.levels[placed.level as usize - 2];
-        let points = corners.map(|corner| view.image()[corner as usize].image());
-        let margin =
-            self.rounding.image_error(bounds.low.abs().max(bounds.high.abs()).element_sum());
-        let (first_row, last_row) = (self.row(level, bounds.low.y), self.row(level, bounds.high.y));
-        for row in first_row..=last_row {
-            let low = self.origin.y + f64::from(row) * level.cell - margin;
-            let high = low + level.cell + 2.0 * margin;
-            let Some((left, right)) = chord(&points, low, margin)
-                .zip(chord(&points, high, margin))
-                .map(|(a, b)| (a.0.max(b.0) + margin, a.1.min(b.1) - margin))
-            else {
-                continue;
-            };
-            let first = ((left - self.origin.x) * level.inverse).ceil().max(0.0);
-            let end = ((right - self.origin.x) * level.inverse).floor();
-            // Border cells stand for all that lies further out: no triangle covers that.
-            let border = if self.has_border_cells() { 1.0 } else { 0.0 };
-            if f64::from(row) < border || f64::from(row) >= f64::from(level.rows) - border {
-                continue;
-            }
-            let end = end.min(f64::from(level.columns) - border);
-            let mut column = first.max(border);
-            while column < end {
-                f(level.first + row * level.columns + column as u32, depth);
-                column += 1.0;
-            }
-        }
-    }
-}
-
-/// The sine of the flattest angle between a triangle and the sight lines through it; `None` when
-/// it is too flat to serve as a cover.
-fn sine_of_sight(view: &ViewedScene, corners: [u32; 3]) -> Option<f64> {
-    let positions = view.sight().positions();
-    let [p, q, r] = corners.map(|corner| positions[corner as usize]);
-    let normal = (q - p).cross(r - p).normalize_or_zero();
-    let sine = if view.sight().has_near_plane() {
-        let eye = view.camera().eye();
-        let farthest = [p, q, r].iter().map(|&v| (v - eye).length()).fold(0.0, f64::max);
-        normal.dot(p - eye).abs() / farthest
-    } else {
-        normal.dot(view.camera().frame().forward).abs()
-    };
-    (sine > MIN_COVER_SINE).then_some(sine)
-}
-
-/// The stretch of the horizontal line at `y` within a triangle, a little too short.
-fn chord(points: &[DVec2; 3], y: f64, margin: f64) -> Option<(f64, f64)> {
-    let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-    for i in 0..3 {
-        let (a, b) = (points[i], points[(i + 1) % 3]);
-        let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
-        if a.y <= y && y <= b.y && a.y < b.y {
-            let x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
-            // A nearly level side gives no sure place: what the margin does to y moves x further.
-            let slack = margin * (1.0 + (b.x - a.x).abs() / (b.y - a.y));
-            left = left.min(x + slack);
-            right = right.max(x - slack);
-        }
-    }
-    (left < right).then_some((left, right))
-}
-
-/// Calls `f` with each cell of `coarse` and its up to four parts in `fine`.
-fn for_parts(fine: &Level, coarse: &Level, mut f: impl FnMut(u32, [Option<u32>; 4])) {
-    for row in 0..coarse.rows {
-        for column in 0..coarse.columns {
-            let part = |i: u32, j: u32| {
-                let (x, y) = (2 * column + i, 2 * row + j);
-                (x < fine.columns && y < fine.rows).then(|| fine.first + y * fine.columns + x)
-            };
-            f(
-                coarse.first + row * coarse.columns + column,
-                [part(0, 0), part(1, 0), part(0, 1), part(1, 1)],
-            );
-        }
-    }
 }
 
 /// The origin and the levels for the box of all segments.
@@ -649,7 +395,7 @@ fn levels<'s>(
         low = low.min(bounds.low);
         high = high.max(bounds.high);
     }
-    if rounding.flat_error.is_none() {
+    if rounding.is_unbounded() {
         let widest = DVec2::splat(WIDEST_TANGENT);
         (low, high) = (low.clamp(-widest, widest), high.clamp(-widest, widest));
     }
@@ -756,46 +502,5 @@ impl Visitor {
                 })
             })
         })
-    }
-}
-
-/// A quick test that an item's image lies to one side of a segment's line.
-///
-/// A corner that is one of the segment's own ends lies on the line and does not count: an item
-/// that meets the line there only covers no more than a point.
-pub(super) struct Separation<'i> {
-    rounding: &'i Rounding,
-    ends: [u32; 2],
-    start: DVec2,
-    along: DVec2,
-    size: f64,
-}
-
-impl<'i> Separation<'i> {
-    pub(super) fn new(rounding: &'i Rounding, segment: &Segment) -> Self {
-        let [a, b] = segment.image;
-        let size = a.abs().max(b.abs()).element_sum();
-        Self { rounding, ends: segment.ends, start: a, along: b - a, size }
-    }
-
-    /// Whether an item with these corners is certainly to one side.
-    #[inline]
-    pub(super) fn apart<const N: usize>(&self, corners: [u32; N], points: [ImagePoint; N]) -> bool {
-        let points = points.map(ImagePoint::image);
-        let offsets = points.map(|p| p - self.start);
-        let farthest = points.iter().fold(DVec2::ZERO, |far, p| far.max(p.abs()));
-        let error = self.rounding.image_error(farthest.element_sum().max(self.size));
-        let reach = offsets.iter().fold(self.along.abs(), |reach, d| reach.max(d.abs()));
-        // Each factor of the area is off by two errors at most.
-        let slack = 8.0 * error * (reach.element_sum() + error);
-        let (mut left, mut right) = (true, true);
-        for (corner, offset) in corners.into_iter().zip(offsets) {
-            if corner != self.ends[0] && corner != self.ends[1] {
-                let side = self.along.perp_dot(offset);
-                left &= side > slack;
-                right &= side < -slack;
-            }
-        }
-        (left || right) && N > 0
     }
 }

@@ -17,6 +17,7 @@ pub mod outline;
 pub mod roberts;
 
 mod index;
+mod rounding;
 mod segment;
 mod shadow;
 mod sweep;

@@ -19,7 +19,8 @@
 //! edges have the same image. Exact.
 
 use super::appel::Sides;
-use super::index::{ImageIndex, Place, Rounding, Visitor};
+use super::index::{ImageIndex, Visitor};
+use super::rounding::{Place, Rounding};
 use super::segment::Segment;
 use super::shadow::{Cover, image_cover};
 use super::sweep::Sweep;

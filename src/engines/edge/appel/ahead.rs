@@ -3,7 +3,7 @@
 //! Their boxes in the image say which may cross; then depths, and the sides of the segment on which
 //! the ends of the cutting edge lie, rule out most of what is left.
 
-use super::super::index::{Rounding, Separation};
+use super::super::rounding::{Rounding, Separation};
 use super::super::segment::Segment;
 use super::box_join::{LatticeBox, Pairs, meeting_pairs};
 use super::cutting::CuttingEdge;

@@ -5,7 +5,8 @@
 //! boxes overlap are offered as pairs. Very short edges, whose angle means little, are looked up by
 //! place instead. Nothing is decided here: pairs may be offered in vain.
 
-use super::super::index::{ImageIndex, Place, Rounding, Visitor};
+use super::super::index::{ImageIndex, Visitor};
+use super::super::rounding::{Place, Rounding};
 use super::super::segment::Segment;
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;

@@ -12,7 +12,7 @@
 //! layers in front of a segment, which were carried from elsewhere, and the triangles at or behind it,
 //! which are counted here one by one, must have an even sum on either side of it.
 
-use super::super::index::Rounding;
+use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Shadow, image_cover, shadow};
 use super::cutting::Sides;

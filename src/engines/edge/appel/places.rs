@@ -1,6 +1,6 @@
 //! A lattice over the drawn segments, in the image and in depth, and where the vertices lie on it.
 
-use super::super::index::Rounding;
+use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::box_join::{Lattice, LatticeBox, Place, box_of_all};
 use crate::classify::{ImagePoint, ViewedScene};

@@ -1,6 +1,6 @@
 //! How many layers lie over a segment where it leaves one of its ends.
 
-use super::super::index::Rounding;
+use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Sides, side_of};
 use super::box_join::{LatticeBox, Place, meeting_pairs};

@@ -15,7 +15,7 @@
 //! Where a cutting edge *touches* the segment its triangles have planes through that point; they
 //! cover on one side of it or neither, which is what the rule for piercing says.
 
-use super::super::index::{Bounds, Rounding};
+use super::super::rounding::{Bounds, Rounding};
 use super::super::segment::Segment;
 use super::super::shadow::{Shadow, Sides, shadow, side_of};
 use super::box_join::Pairs;

@@ -1,0 +1,170 @@
+//! Boxes in the image, rounded outwards, and a quick test for what lies to one side of a segment.
+//!
+//! Nothing here decides visibility: whatever is in doubt counts as near.
+
+use super::segment::Segment;
+use crate::classify::{ImagePoint, ViewedScene};
+use crate::predicates::Sign;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+/// Image coordinates are within this, times the square of their distance from the center plus one,
+/// of the truth: they take about a dozen roundings of numbers that large.
+const IMAGE_ERROR: f64 = 32.0 * f64::EPSILON;
+
+/// Depths are within this part of the largest number that goes into them.
+const DEPTH_ERROR: f64 = 32.0 * f64::EPSILON;
+
+/// A box in the image and the range of depths in it, rounded outwards.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    /// The lowest corner in the image.
+    pub low: DVec2,
+    /// The highest corner in the image.
+    pub high: DVec2,
+    /// The smallest depth.
+    pub nearest: f64,
+    /// The largest depth.
+    pub farthest: f64,
+}
+
+impl Bounds {
+    /// The same box with depths up to `farthest`.
+    #[must_use]
+    pub(super) fn reaching(self, farthest: f64) -> Self {
+        Self { farthest, ..self }
+    }
+
+    /// The same box with all depths up to its farthest.
+    #[must_use]
+    pub(super) fn with_all_nearer(self) -> Self {
+        Self { nearest: f64::NEG_INFINITY, ..self }
+    }
+
+    /// The lowest and the highest corner, with depths as third coordinates.
+    pub(super) fn corners(&self) -> [DVec3; 2] {
+        [self.low.extend(self.nearest), self.high.extend(self.farthest)]
+    }
+
+    /// Whether the boxes share a point of the image.
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+}
+
+/// Where an item goes in an index.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Place {
+    /// It is of no interest.
+    Nowhere,
+    /// It is offered to every segment by other means: see [`ImageIndex::everywhere`].
+    Everywhere,
+    /// Into the cells that its box touches.
+    Within(Bounds),
+}
+
+/// Everything about the view that rounding outwards needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rounding {
+    /// In orthographic projection the error does not depend on the place.
+    flat_error: Option<f64>,
+    depth_error: f64,
+}
+
+impl Rounding {
+    pub(super) fn new(view: &ViewedScene) -> Self {
+        let eye = view.camera().eye();
+        let largest = view
+            .sight()
+            .positions()
+            .par_iter()
+            .map(|&p| (p - eye).abs().element_sum() + p.abs().element_sum())
+            .reduce(|| 0.0, f64::max);
+        let flat_error = (!view.sight().has_near_plane()).then_some(IMAGE_ERROR * largest);
+        Self { flat_error, depth_error: DEPTH_ERROR * largest }
+    }
+
+    /// Whether images reach infinitely far: in perspective, near the eye's plane.
+    pub(super) fn is_unbounded(&self) -> bool {
+        self.flat_error.is_none()
+    }
+
+    /// How far an image coordinate up to `size` in absolute value may be off.
+    pub(super) fn image_error(&self, size: f64) -> f64 {
+        self.flat_error.unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
+    }
+
+    /// The box of some points of the image with their depths.
+    pub(super) fn bounds<const N: usize>(&self, points: [DVec2; N], depths: [f64; N]) -> Bounds {
+        let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let error = self.image_error(low.abs().max(high.abs()).element_sum());
+        Bounds {
+            low: low - error,
+            high: high + error,
+            nearest: depths.iter().copied().fold(f64::INFINITY, f64::min) - self.depth_error,
+            farthest: depths.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth_error,
+        }
+    }
+
+    /// Where a triangle goes by its image: nowhere when it covers nothing, everywhere when the near
+    /// plane cuts it.
+    pub(super) fn place(&self, view: &ViewedScene, triangle: u32) -> Place {
+        if view.triangle_turns()[triangle as usize] == Sign::Zero {
+            return Place::Nowhere;
+        }
+        let corners = view.scene().triangles()[triangle as usize];
+        if view.near_plane_cuts() {
+            let signs = corners.map(|corner| view.sight().near_distance(corner).1);
+            if signs == [Sign::Negative; 3] {
+                return Place::Nowhere;
+            }
+            if signs.contains(&Sign::Negative) {
+                return Place::Everywhere;
+            }
+        }
+        let points = corners.map(|corner| view.image()[corner as usize]);
+        Place::Within(self.bounds(points.map(ImagePoint::image), points.map(|p| p.depth)))
+    }
+}
+
+/// A quick test that an item's image lies to one side of a segment's line.
+///
+/// A corner that is one of the segment's own ends lies on the line and does not count: an item
+/// that meets the line there only covers no more than a point.
+pub(super) struct Separation<'i> {
+    rounding: &'i Rounding,
+    ends: [u32; 2],
+    start: DVec2,
+    along: DVec2,
+    size: f64,
+}
+
+impl<'i> Separation<'i> {
+    pub(super) fn new(rounding: &'i Rounding, segment: &Segment) -> Self {
+        let [a, b] = segment.image;
+        let size = a.abs().max(b.abs()).element_sum();
+        Self { rounding, ends: segment.ends, start: a, along: b - a, size }
+    }
+
+    /// Whether an item with these corners is certainly to one side.
+    #[inline]
+    pub(super) fn apart<const N: usize>(&self, corners: [u32; N], points: [ImagePoint; N]) -> bool {
+        let points = points.map(ImagePoint::image);
+        let offsets = points.map(|p| p - self.start);
+        let farthest = points.iter().fold(DVec2::ZERO, |far, p| far.max(p.abs()));
+        let error = self.rounding.image_error(farthest.element_sum().max(self.size));
+        let reach = offsets.iter().fold(self.along.abs(), |reach, d| reach.max(d.abs()));
+        // Each factor of the area is off by two errors at most.
+        let slack = 8.0 * error * (reach.element_sum() + error);
+        let (mut left, mut right) = (true, true);
+        for (corner, offset) in corners.into_iter().zip(offsets) {
+            if corner != self.ends[0] && corner != self.ends[1] {
+                let side = self.along.perp_dot(offset);
+                left &= side > slack;
+                right &= side < -slack;
+            }
+        }
+        (left || right) && N > 0
+    }
+}
