@@ -15,11 +15,12 @@ use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
     GridPieces, Lines, Order, Side, SurfaceError, floating_horizon, max_min, meshed, strokes,
 };
+use hiddenline::optimize::Options;
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
 use hiddenline::surface::{Grid, LatticeLines, LinedMesh, Placement};
-use hiddenline::view::Camera;
+use hiddenline::view::{Camera, Projection};
 use hiddenline::writers::Format;
 
 pub(super) use self::args::SurfaceArgs;
@@ -31,6 +32,9 @@ use super::draw::read_camera;
 use super::paper::{Notes, Run};
 use super::progress::Progress;
 use super::{config, source};
+
+/// Drawings with at most so many points are joined again in a moment.
+const FEW_POINTS: usize = 12_000;
 
 /// What is to be done.
 pub(super) struct Job {
@@ -78,6 +82,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
     }
+    let usual = joining(&drawing, stats.engine, &camera);
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
     let notes =
@@ -87,7 +92,19 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         &camera,
         &job.page,
         plot_options(job),
+        &usual,
     )
+}
+
+/// What to do with the strokes. Those of a grid run along its lines already, and no line lies on
+/// another unless the surface is seen edge-on: joining many of them again would take several times
+/// as long as all the rest.
+fn joining(drawing: &Drawing, engine: &str, camera: &Camera) -> Options {
+    let usual = Options::for_drawings();
+    let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
+    let is_joined =
+        matches!(engine, "max-min" | "floating-horizon") && drawing.n_points() > FEW_POINTS;
+    if is_joined && !is_edge_on { Options { join_tolerance_mm: None, ..usual } } else { usual }
 }
 /// The camera that the job asks for.
 fn view_of(job: &Job, surface: &Surface) -> Result<Camera, Box<dyn Error>> {

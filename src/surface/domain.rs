@@ -172,7 +172,8 @@ impl LinedMesh {
                     if is_cut && !corners.iter().all(|&k| inside(k)) {
                         let mut polygon = Vec::with_capacity(4);
                         let mut cut = Vec::with_capacity(2);
-                        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b]))
+                        for (a, b) in
+                            [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b]))
                         {
                             if inside(a) {
                                 polygon.push(base + a);

@@ -13,7 +13,6 @@ use super::sheets::Input;
 use crate::cli::args::{CameraArgs, OutputArgs, PageArgs};
 use crate::cli::{Refused, values};
 
-
 /// Samples along each axis, unless given.
 const DEFAULT_SAMPLES: usize = 81;
 
@@ -70,7 +69,7 @@ struct InputArgs {
     more: Vec<String>,
     /// Heights from a file; `-` is standard input
     ///
-    /// Rows of numbers, ESRI ASCII grid, NPY, or a gray PNG, by the file's content.
+    /// Rows of numbers, ESRI ASCII grid, NPY, or a gray PNG or TIFF, by the file's content.
     #[arg(long, value_name = "FILE", conflicts_with = "expression")]
     grid: Option<PathBuf>,
     /// Scattered points from a file with x, y and z on each line; `-` is standard input

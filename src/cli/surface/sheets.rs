@@ -8,8 +8,7 @@ use glam::DVec3;
 use hiddenline::engines::surface::max_min;
 use hiddenline::formula::Formula;
 use hiddenline::surface::{
-    Grid, Holes, MAX_SAMPLES, TrimmedGrid, close_seams, delaunay, evenly, read_heights,
-    read_points,
+    Grid, Holes, MAX_SAMPLES, TrimmedGrid, close_seams, delaunay, evenly, read_heights, read_points,
 };
 
 use hiddenline::view::Camera;
@@ -33,9 +32,13 @@ pub(super) enum Input {
     },
     File(PathBuf),
     Points(PathBuf),
-    Parametric { formulas: Vec<Formula>, u: (f64, f64), v: (f64, f64), samples: (usize, usize) },
+    Parametric {
+        formulas: Vec<Formula>,
+        u: (f64, f64),
+        v: (f64, f64),
+        samples: (usize, usize),
+    },
 }
-
 
 /// The surface that is drawn.
 pub(super) enum Surface {
@@ -129,9 +132,7 @@ impl Surface {
             Box::new(|k| grid.point(k as u32))
         }
         match self {
-            Self::Grids(grids) => {
-                grids.iter().map(|g| (grid(g).0, grid(g).1, points(g))).collect()
-            }
+            Self::Grids(grids) => grids.iter().map(|g| (grid(g).0, grid(g).1, points(g))).collect(),
             Self::Trimmed(grids) => {
                 let grids = grids.iter().map(TrimmedGrid::grid);
                 grids.map(|g| (grid(g).0, grid(g).1, points(g))).collect()
@@ -241,4 +242,3 @@ pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn 
     surface.scale_heights(factor);
     Ok((surface, factor))
 }
-

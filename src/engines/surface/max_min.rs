@@ -60,9 +60,8 @@ pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
     let near = near * camera.forward().length_squared();
     let depth = |p: DVec3| (p - camera.eye()).dot(camera.forward());
     let (low, high) = bounds(grid);
-    let corner = |k: u8| {
-        DVec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low)
-    };
+    let corner =
+        |k: u8| DVec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low);
     if (0..8).all(|k| depth(corner(k)) >= near) {
         return true;
     }

@@ -78,8 +78,7 @@ pub fn draw(
             shortest: 0.0,
         };
         let shortest_mm = options.shortest_stroke_mm;
-        chaining.shortest =
-            shortest(&view, &visibility, None, &chaining, shortest_mm, mm_per_unit);
+        chaining.shortest = shortest(&view, &visibility, None, &chaining, shortest_mm, mm_per_unit);
         if !options.underside {
             return chain(&view, &visibility, None, &chaining);
         }
