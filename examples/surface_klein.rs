@@ -54,6 +54,7 @@ pub(crate) fn plot() -> Result<Plot> {
         folds: true,
         border: false,
         exact: false,
+        underside: false,
         apart_by_kind: false,
         shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
     };

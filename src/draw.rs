@@ -1,6 +1,6 @@
 //! From a scene and a camera to strokes: the stages between, in order.
 
-use crate::chain::{ChainOptions, chain};
+use crate::chain::{ChainOptions, chain, shortest};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{Engine, Settings, outline, solve};
 use crate::scene::Scene;
@@ -134,15 +134,13 @@ pub fn draw(
         let mut chaining = ChainOptions {
             hidden: options.hidden != HiddenLines::None,
             hidden_levels: options.hidden_levels,
-            exact: true,
+            exact: options.exact,
             apart_by_kind: options.apart_by_kind,
             shortest: 0.0,
         };
-        if !options.exact && options.shortest_stroke_mm > 0.0 {
-            let scale = mm_per_unit(&chain(&view, &visibility, outline.as_ref(), &chaining));
-            chaining.shortest = options.shortest_stroke_mm / scale;
-        }
-        chaining.exact = options.exact;
+        let shortest_mm = options.shortest_stroke_mm;
+        chaining.shortest =
+            shortest(&view, &visibility, outline.as_ref(), &chaining, shortest_mm, mm_per_unit);
         chain(&view, &visibility, outline.as_ref(), &chaining)
     })
 }

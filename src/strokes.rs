@@ -61,6 +61,9 @@ pub struct Stroke<'a> {
     /// Whether it is part of the outline: nothing but the background is seen beside it. Only told
     /// where the outline was asked for.
     pub outline: bool,
+    /// Whether it is a line of a surface seen from below. Only told where the undersides were asked
+    /// for.
+    pub underside: bool,
     /// Two points or more in image coordinates; a closed stroke ends at its first point.
     pub points: &'a [DVec2],
 }
@@ -78,6 +81,7 @@ struct Head {
     kind: StrokeKind,
     qi: u32,
     outline: bool,
+    underside: bool,
     end: u32,
 }
 
@@ -104,8 +108,17 @@ impl Drawing {
         if self.points.len() < start + 2 {
             self.points.truncate(start);
         } else {
-            self.heads.push(Head { kind, qi, outline, end: self.points.len() as u32 });
+            let end = self.points.len() as u32;
+            self.heads.push(Head { kind, qi, outline, underside: false, end });
         }
+    }
+
+    /// Appends the strokes of another drawing, as lines on the underside of a surface.
+    pub fn append_undersides(&mut self, other: &Self) {
+        let before = self.points.len() as u32;
+        self.points.extend_from_slice(&other.points);
+        let below = |head: &Head| Head { underside: true, end: before + head.end, ..*head };
+        self.heads.extend(other.heads.iter().map(below));
     }
 
     /// Number of strokes.
@@ -128,7 +141,8 @@ impl Drawing {
         self.heads.iter().scan(0, |start, head| {
             let points = &self.points[*start..head.end as usize];
             *start = head.end as usize;
-            Some(Stroke { kind: head.kind, qi: head.qi, outline: head.outline, points })
+            let Head { kind, qi, outline, underside, .. } = *head;
+            Some(Stroke { kind, qi, outline, underside, points })
         })
     }
 

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use hiddenline::draw::draw;
 use hiddenline::mesh::{Mesh, Repairs};
+use hiddenline::optimize::Options;
 use hiddenline::page::{Page, PlotOptions};
 use hiddenline::read::read_file;
 use hiddenline::scene::Scene;
@@ -59,6 +60,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         &camera,
         &job.page,
         plot_options(job),
+        &Options::for_drawings(),
     )
 }
 

@@ -52,6 +52,7 @@ impl Run<'_> {
         camera: &Camera,
         page: &PageOptions,
         plot: PlotOptions,
+        usual: &Options,
     ) -> Result<(), Box<dyn Error>> {
         let is_json = self.output.format == Format::Json;
         self.progress.stage("placing");
@@ -69,7 +70,7 @@ impl Run<'_> {
                 Ok(json::write(drawing, camera, page.page_from_image, out)?)
             });
         }
-        self.plot(&page.paper.description(), placed.plot, &Options::for_drawings())
+        self.plot(&page.paper.description(), placed.plot, usual)
     }
 
     /// Joins, orders and writes a page, and ends the run.

@@ -20,6 +20,9 @@ const PALETTE: [&str; 8] =
 /// Nearly black: programs that tell pens by color take it for another one than the visible lines'.
 const OUTLINE_COLOR: &str = "#101010";
 
+/// Blue: told from the black of upper sides by people and by programs.
+const UNDERSIDE_COLOR: &str = "#0000c0";
+
 #[derive(Args)]
 #[command(next_help_heading = "Pens and plotter")]
 pub(super) struct PlotArgs {
@@ -140,6 +143,19 @@ impl Plotting {
         for level in 1..=levels {
             let gray = 0x80 + (level - 1) * 0x60 / levels;
             add(Drawn::HiddenLevel(level), width_mm, format!("#{gray:02x}{gray:02x}{gray:02x}"));
+        }
+        rules
+    }
+
+    /// The pens of a surface; also one for its underside if that is apart, unless there is a rule.
+    pub(super) fn pens_for_surface(&self, underside: bool, width_mm: f64) -> Vec<PenRule> {
+        let mut rules = self.pens(width_mm);
+        if underside && rules.iter().all(|rule| rule.drawn != Drawn::Underside) {
+            // The first number is left for the lines on the upper side.
+            let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
+            let number = (2..).find(is_free).unwrap_or(2);
+            let pen = Pen { width_mm, color: UNDERSIDE_COLOR.into() };
+            rules.push(PenRule { drawn: Drawn::Underside, number, pen });
         }
         rules
     }

@@ -167,8 +167,9 @@ fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
         return Ok(Drawn::HiddenLevel(level));
     }
     let all = || {
-        let first = [Drawn::Visible, Drawn::Hidden, Drawn::HiddenLevel(1), Drawn::Outline];
-        first.into_iter().chain(KINDS.map(Drawn::Kind))
+        let hidden = [Drawn::Hidden, Drawn::HiddenLevel(1)];
+        let visible = [Drawn::Visible, Drawn::Outline, Drawn::Underside];
+        hidden.into_iter().chain(visible).chain(KINDS.map(Drawn::Kind))
     };
     all().find(|drawn| drawn.name() == name).ok_or_else(|| {
         let names: Vec<_> = all().map(Drawn::name).collect();

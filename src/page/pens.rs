@@ -19,6 +19,8 @@ pub enum Drawn {
     HiddenLevel(u32),
     /// Strokes of the outline.
     Outline,
+    /// Visible strokes on the underside of a surface.
+    Underside,
     /// Visible strokes of one kind.
     Kind(StrokeKind),
 }
@@ -31,6 +33,7 @@ impl Drawn {
             Self::Hidden => "hidden".into(),
             Self::HiddenLevel(level) => format!("hidden{level}").into(),
             Self::Outline => "outline".into(),
+            Self::Underside => "underside".into(),
             Self::Kind(kind) => kind.name().into(),
         }
     }
@@ -117,7 +120,8 @@ impl Holder {
             ruled(Drawn::HiddenLevel(stroke.qi)).unwrap_or(self.hidden)
         } else {
             let outline = if stroke.outline { ruled(Drawn::Outline) } else { None };
-            outline.or_else(|| ruled(Drawn::Kind(stroke.kind))).unwrap_or(self.visible)
+            let below = if stroke.underside { ruled(Drawn::Underside) } else { None };
+            outline.or(below).or_else(|| ruled(Drawn::Kind(stroke.kind))).unwrap_or(self.visible)
         };
         &mut self.layers[layer].lines
     }

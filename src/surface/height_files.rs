@@ -1,4 +1,4 @@
-//! Grids of heights in files of other programs: ESRI ASCII grid, NPY and PNG.
+//! Grids of heights in files of other programs: ESRI ASCII grid, NPY, PNG and TIFF.
 
 use thiserror::Error;
 
@@ -15,7 +15,7 @@ pub enum HeightFileError {
     #[error(transparent)]
     Grid(#[from] GridError),
     /// Neither a known signature nor text.
-    #[error("not a text of numbers, an ESRI ASCII grid, an NPY file or a PNG")]
+    #[error("not a text of numbers, an ESRI ASCII grid, an NPY file, a PNG or a TIFF")]
     Unknown,
     /// A header of an ESRI ASCII grid that is wrong.
     #[error("ESRI ASCII grid: {0}")]
@@ -26,8 +26,11 @@ pub enum HeightFileError {
     /// A PNG that cannot be decoded.
     #[error("PNG: {0}")]
     Png(#[from] png::DecodingError),
-    /// A PNG without one channel of gray.
-    #[error("PNG: a height map must be gray; this one has colors")]
+    /// A TIFF that cannot be decoded.
+    #[error("TIFF: {0}")]
+    Tiff(#[from] tiff::TiffError),
+    /// A picture without one channel of gray.
+    #[error("a height map must be a gray picture; this one has colors")]
     Colors,
 }
 
@@ -39,6 +42,8 @@ pub enum HeightFileError {
 /// | ESRI ASCII grid | first is the largest y | its corner and cell size; NODATA is a hole |
 /// | NPY, two axes | first is the smallest y | 0 to n − 1 |
 /// | PNG, gray | first is the largest y | 0 to n − 1; black is 0, white 1 |
+/// | TIFF, gray, whole numbers | first is the largest y | the same, if they have no sign |
+/// | TIFF, gray, floats | first is the largest y | 0 to n − 1; the heights are as they are |
 ///
 /// `placement` overrides where the lines stand, and its flip turns the order of the rows over.
 ///
@@ -47,6 +52,9 @@ pub enum HeightFileError {
 pub fn read_heights(bytes: &[u8], placement: Placement) -> Result<Grid, HeightFileError> {
     if bytes.starts_with(b"\x89PNG") {
         return read_png(bytes)?.place(placement);
+    }
+    if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") {
+        return read_tiff(bytes)?.place(placement);
     }
     if bytes.starts_with(b"\x93NUMPY") {
         return read_npy(bytes)?.place(placement);
@@ -239,6 +247,37 @@ fn read_png(bytes: &[u8]) -> Result<Heights, HeightFileError> {
         pixels[..n_bytes].chunks_exact(2 * channels).map(gray).collect()
     } else {
         pixels[..n_bytes].chunks_exact(channels).map(|p| f64::from(p[0]) / 255.0).collect()
+    };
+    let mut heights = Heights { columns, rows, values, extent: None };
+    heights.flip();
+    Ok(heights)
+}
+
+fn read_tiff(bytes: &[u8]) -> Result<Heights, HeightFileError> {
+    use tiff::decoder::{Decoder, DecodingResult};
+    let mut decoder = Decoder::new(std::io::Cursor::new(bytes))?;
+    let (columns, rows) = decoder.dimensions()?;
+    let (columns, rows) = (columns as usize, rows as usize);
+    size(columns, rows)?;
+    if !matches!(decoder.colortype()?, tiff::ColorType::Gray(_)) {
+        return Err(HeightFileError::Colors);
+    }
+    fn heights<T: Copy + Into<f64>>(values: &[T], white: f64) -> Vec<f64> {
+        values.iter().map(|&z| z.into() / white).collect()
+    }
+    let values = match decoder.read_image()? {
+        DecodingResult::U8(z) => heights(&z, f64::from(u8::MAX)),
+        DecodingResult::U16(z) => heights(&z, f64::from(u16::MAX)),
+        DecodingResult::U32(z) => heights(&z, f64::from(u32::MAX)),
+        DecodingResult::I8(z) => heights(&z, 1.0),
+        DecodingResult::I16(z) => heights(&z, 1.0),
+        DecodingResult::I32(z) => heights(&z, 1.0),
+        DecodingResult::F32(z) => heights(&z, 1.0),
+        DecodingResult::F64(z) => heights(&z, 1.0),
+        _ => {
+            let kind = tiff::TiffUnsupportedError::UnknownInterpretation;
+            return Err(tiff::TiffError::UnsupportedError(kind).into());
+        }
     };
     let mut heights = Heights { columns, rows, values, extent: None };
     heights.flip();

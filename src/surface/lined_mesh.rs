@@ -107,7 +107,11 @@ impl LinedMesh {
         }
     }
 
-    fn push_triangle(&mut self, corners @ [a, b, c]: [u32; 3], is_lined: bool) {
+    pub(super) fn push_line(&mut self, ends: [u32; 2], kind: StrokeKind) {
+        self.lines.push(SurfaceLine { ends, kind });
+    }
+
+    pub(super) fn push_triangle(&mut self, corners @ [a, b, c]: [u32; 3], is_lined: bool) {
         self.triangles.push(corners);
         if is_lined {
             let ends = [[a, b], [b, c], [c, a]].into_iter();

@@ -1,6 +1,7 @@
 //! Surfaces z = f(x, y): where their samples come from, and the mesh they make.
 
 mod csv;
+mod domain;
 mod grid;
 mod height_files;
 mod levels;
@@ -8,6 +9,7 @@ mod lined_mesh;
 mod points;
 
 pub use csv::{CsvError, Placement, read_csv};
+pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
 pub use height_files::{HeightFileError, read_heights};
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};

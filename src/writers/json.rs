@@ -53,6 +53,8 @@ struct StrokeRecord<'a> {
     qi: Option<u32>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     outline: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<&'static str>,
     #[serde(serialize_with = "serialize_points")]
     points: &'a [glam::DVec2],
 }
@@ -99,7 +101,8 @@ impl<'a> From<Stroke<'a>> for StrokeRecord<'a> {
         let visible = stroke.qi == 0;
         let qi = (!visible).then_some(stroke.qi);
         let (kind, outline) = (stroke.kind.name(), stroke.outline);
-        Self { kind, visible, qi, outline, points: stroke.points }
+        let side = stroke.underside.then_some("lower");
+        Self { kind, visible, qi, outline, side, points: stroke.points }
     }
 }
 

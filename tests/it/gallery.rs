@@ -55,6 +55,13 @@ pictures! {
     spiral_stair the_stair_is_up_to_date "../../examples/spiral_stair.rs";
     spot the_cow_is_up_to_date "../../examples/spot.rs";
     surface_klein the_bottle_is_up_to_date "../../examples/surface_klein.rs";
+    surface_saddle the_saddle_is_up_to_date "../../examples/surface_saddle.rs";
+    surface_sinc the_hat_is_up_to_date "../../examples/surface_sinc.rs";
+    surface_sphere the_sphere_is_up_to_date "../../examples/surface_sphere.rs";
+    surface_spikes the_spikes_are_up_to_date "../../examples/surface_spikes.rs";
+    surface_terrain the_landscape_is_up_to_date "../../examples/surface_terrain.rs";
+    surface_torus the_torus_is_up_to_date "../../examples/surface_torus.rs";
+    surface_volcano the_volcano_is_up_to_date "../../examples/surface_volcano.rs";
     surface_peaks the_peaks_are_up_to_date "../../examples/surface_peaks.rs";
     torus_knot the_knot_is_up_to_date "../../examples/torus_knot.rs";
 }

@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 use super::pen_path::{LineStroke, order};
 use super::pieces::{GridPieces, LOWER, PARTLY, Piece, Side, UPPER};
+use crate::predicates::Sign;
+use crate::predicates::exact::{Towards, facing};
 use crate::strokes::{Drawing, StrokeKind};
 use crate::surface::Grid;
 use crate::view::{Camera, Frame, Projection};
@@ -20,7 +22,8 @@ pub struct Lines {
     pub along_y: bool,
     /// Only each line with a number that is a multiple of this, counted from 0, and the last one.
     pub every: usize,
-    /// Only what is seen from this side.
+    /// Only what is seen from this side; lines on the surface's border are seen as their triangle
+    /// is.
     pub side: Option<Side>,
     /// Two-point strokes, one for each visible piece of each edge, instead of chains.
     pub separate: bool,
@@ -81,15 +84,18 @@ struct Projector {
     frame: Frame,
     /// Perspective: the least distance along `frame.forward`.
     near: Option<f64>,
+    towards: Towards,
 }
 
 impl Projector {
     fn new(camera: &Camera) -> Self {
-        let near = match camera.projection() {
-            Projection::Perspective { near, .. } => Some(near * camera.forward().length()),
-            Projection::Orthographic => None,
+        let (near, towards) = match camera.projection() {
+            Projection::Perspective { near, .. } => {
+                (Some(near * camera.forward().length()), Towards::Point(camera.eye()))
+            }
+            Projection::Orthographic => (None, Towards::Along(camera.forward())),
         };
-        Self { eye: camera.eye(), frame: camera.frame(), near }
+        Self { eye: camera.eye(), frame: camera.frame(), near, towards }
     }
 
     fn image(&self, p: DVec3) -> DVec2 {
@@ -159,6 +165,30 @@ impl Chains {
 }
 
 impl Line {
+    /// Which side of the surface is seen at an edge on its border, by its only triangle; `None`
+    /// inside.
+    fn border_side(&self, grid: &Grid, k: usize, projector: &Projector) -> Option<Side> {
+        let (nx, ny) = (grid.xs().len(), grid.ys().len());
+        let from = self.first + k * self.step;
+        let (i, j) = (from % nx, from / nx);
+        let (cell, is_lower_right) = match self.step {
+            1 if j == 0 => (from, true),
+            1 if j + 1 == ny => (from - nx, false),
+            1 => return None,
+            _ if i == 0 => (from, false),
+            _ if i + 1 == nx => (from - 1, true),
+            _ => return None,
+        };
+        let corners = if is_lower_right {
+            [cell, cell + 1, cell + nx + 1]
+        } else {
+            [cell, cell + nx + 1, cell + nx]
+        };
+        let triangle = corners.map(|sample| grid.point(sample as u32));
+        let is_upper = facing(triangle, projector.towards) != Sign::Negative;
+        Some(if is_upper { Side::Upper } else { Side::Lower })
+    }
+
     fn chains(
         &self,
         grid: &Grid,
@@ -173,7 +203,7 @@ impl Line {
             pieces.pieces[pieces.pieces.partition_point(|piece| piece.edge < first_edge)..].iter();
         // Whether the chain reaches the sample where the next edge begins.
         let mut reaches = false;
-        let wanted = |side: Side| lines.side.is_none_or(|only| only == side);
+        let border_side = |k: usize| self.border_side(grid, k, projector);
         for k in 0..self.n - 1 {
             let edge = (self.edge + k) as u32;
             let status = pieces.status[self.edge + k];
@@ -181,7 +211,9 @@ impl Line {
             let mut last = (reaches && !lines.separate).then_some(0.0);
             let mut add = |piece: &Piece| {
                 let (p, q) = (point(k), point(k + 1));
-                if !wanted(piece.side) {
+                if let Some(only) = lines.side
+                    && border_side(k).unwrap_or(piece.side) != only
+                {
                     return;
                 }
                 let Some((t0, t1)) = projector.kept(p, q, (piece.t0, piece.t1)) else {

@@ -50,11 +50,37 @@ const CELLS_PER_STRIP: usize = 30_000;
 /// Most strips of one part.
 const MAX_STRIPS: usize = 16;
 
+/// Whether no part of the surface lies in front of the eye and nearer than the near plane: such a
+/// part is cut off and must not hide, so a surface with one is for a mesh engine. Parts behind the
+/// eye hide nothing. O(samples) at worst, O(1) for an eye that looks at all of it from afar.
+pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
+    let Projection::Perspective { near, .. } = camera.projection() else {
+        return true;
+    };
+    let near = near * camera.forward().length_squared();
+    let depth = |p: DVec3| (p - camera.eye()).dot(camera.forward());
+    let (low, high) = bounds(grid);
+    let corner =
+        |k: u8| DVec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low);
+    if (0..8).all(|k| depth(corner(k)) >= near) {
+        return true;
+    }
+    let nx = grid.xs().len();
+    (0..grid.ys().len() - 1).into_par_iter().all(|j| {
+        let at = |k: usize| depth(grid.point(k as u32));
+        (j * nx..(j + 1) * nx - 1).all(|k| {
+            let corners = [k, k + 1, k + nx, k + nx + 1].map(at);
+            corners.iter().all(|d| *d >= near) || corners.iter().all(|d| *d <= 0.0)
+        })
+    })
+}
+
 /// Finds the visible parts of all grid lines of `grid`.
 ///
 /// The surface is the triangulated grid; diagonals hide and are not drawn. The camera may stand
 /// anywhere off the surface: over the domain, beside it, below it, far away. What lies behind the
-/// eye is found too: cut it at the near plane before drawing.
+/// eye is found too: cut it at the near plane before drawing. What lies nearer than the near plane
+/// hides too: see [`is_clear_of_near_plane`].
 ///
 /// # Errors
 /// Holes, or an eye on the surface.

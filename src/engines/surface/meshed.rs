@@ -1,12 +1,14 @@
 //! Surfaces drawn by the mesh engines: with holes, of several sheets, or of any shape in space.
 
-use crate::chain::{ChainOptions, chain};
+use crate::chain::{ChainOptions, chain, shortest};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{Engine, Settings, solve};
+use crate::predicates::Sign;
 use crate::stats::{Stats, timed};
 use crate::strokes::{Drawing, StrokeKind};
 use crate::surface::LinedScene;
 use crate::view::Camera;
+use crate::visibility::Visibility;
 
 /// How a surface is drawn by a mesh engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +21,8 @@ pub struct MeshedOptions {
     pub border: bool,
     /// One two-point stroke for each maximal visible interval of each edge.
     pub exact: bool,
+    /// Keep lines on the underside apart, that is where the triangles' backs are seen.
+    pub underside: bool,
     /// Join only pieces of one kind.
     pub apart_by_kind: bool,
     /// Visible strokes shorter than this are dropped, in millimetres on paper.
@@ -69,15 +73,50 @@ pub fn draw(
         let mut chaining = ChainOptions {
             hidden: false,
             hidden_levels: None,
-            exact: true,
+            exact: options.exact,
             apart_by_kind: options.apart_by_kind,
             shortest: 0.0,
         };
-        if !options.exact && options.shortest_stroke_mm > 0.0 {
-            let scale = mm_per_unit(&chain(&view, &visibility, None, &chaining));
-            chaining.shortest = options.shortest_stroke_mm / scale;
+        let shortest_mm = options.shortest_stroke_mm;
+        chaining.shortest = shortest(&view, &visibility, None, &chaining, shortest_mm, mm_per_unit);
+        if !options.underside {
+            return chain(&view, &visibility, None, &chaining);
         }
-        chaining.exact = options.exact;
-        chain(&view, &visibility, None, &chaining)
+        let [upper, lower] = by_side(&view, &visibility)
+            .map(|visibility| chain(&view, &visibility, None, &chaining));
+        let mut drawing = upper;
+        drawing.append_undersides(&lower);
+        drawing
     })
+}
+
+/// The spans of edges seen from above, and of those seen from below.
+fn by_side(view: &ViewedScene, visibility: &Visibility) -> [Visibility; 2] {
+    let mut sides = [Visibility::default(), Visibility::default()];
+    for (k, drawn) in view.drawn().iter().enumerate() {
+        let is_below = usize::from(is_underside(view, drawn.edge));
+        sides[is_below].push(visibility.spans(k));
+        sides[1 - is_below].push(&[]);
+    }
+    sides
+}
+
+/// Whether the triangle that is seen at an edge faces away from the eye: of two that fold there, the
+/// one that does not lie behind the other.
+fn is_underside(view: &ViewedScene, edge: u32) -> bool {
+    let scene = view.scene();
+    let triangles = scene.topology().uses(edge).iter().map(|used| used.face());
+    let is_below = |face: u32| view.facing(face) == Sign::Negative;
+    let mut below = triangles.clone().filter(|&face| is_below(face));
+    let mut above = triangles.clone().filter(|&face| !is_below(face));
+    match (below.next(), above.next()) {
+        (Some(below), Some(above)) => {
+            let corners = scene.triangles()[above as usize];
+            let ends = scene.line(edge);
+            let apex = scene.triangles()[below as usize].into_iter().find(|v| !ends.contains(v));
+            // Depth is positive on the eye's side of a triangle that faces it.
+            apex.is_some_and(|apex| view.sight().depth(corners, apex) == Sign::Positive)
+        }
+        (below, _) => below.is_some(),
+    }
 }

@@ -84,7 +84,7 @@ fn what_max_min_cannot_draw_goes_to_a_mesh_engine() {
         &["--parametric", "u", "v", "u*v", "--samples", "7", "--lines", "mesh"],
     ] {
         let (strokes, engine) = drawn(&folder, arguments);
-        assert_eq!(engine, "roberts", "{arguments:?}");
+        assert!(["roberts", "appel"].contains(&engine.as_str()), "{arguments:?}: {engine}");
         assert!(!strokes.is_empty(), "{arguments:?}");
     }
     let (strokes, _) = drawn(&folder, &["-x^2", "--samples", "9", "--lines", "x,levels"]);
@@ -106,7 +106,7 @@ fn a_sheet_hides_the_one_below() {
 fn scattered_points_are_drawn_as_triangles() {
     let folder = with_file("x,y,z\n0,0,0\n2,0,1\n2,2,0\n0,2,1\n1,1,3\n");
     let (strokes, engine) = drawn(&folder, &["--points", "heights", "--view", "top", "--exact"]);
-    assert_eq!(engine, "roberts");
+    assert_ne!(engine, "max-min");
     assert_eq!((strokes.len(), kinds(&strokes)), (8, vec!["mesh"]));
     let levels = ["--points", "heights", "--lines", "levels", "--levels", "2,"];
     let (strokes, _) = drawn(&folder, &levels);
@@ -148,6 +148,21 @@ fn height_files_of_other_programs_stand_where_they_say() {
     };
     check(esri.as_bytes(), &[]);
     check(&npy, &given);
+    let mut tiff = b"II*\0\x08\0\0\0\x08\0".to_vec();
+    let long = |tag: u16, kind: u16, value: u32| {
+        let head = [tag.to_le_bytes(), kind.to_le_bytes()].concat();
+        [&head[..], &1_u32.to_le_bytes(), &value.to_le_bytes()].concat()
+    };
+    // Width, height, 16 bits, not compressed, black is 0, where the rows begin, rows, bytes.
+    for (tag, value) in
+        [(256, 3), (257, 2), (258, 16), (259, 1), (262, 1), (273, 110), (278, 2), (279, 12)]
+    {
+        tiff.extend(long(tag, if tag == 273 || tag == 279 { 4 } else { 3 }, value));
+    }
+    tiff.extend([0; 4]);
+    assert_eq!(tiff.len(), 110);
+    tiff.extend(gray.iter().flat_map(|z| z.to_le_bytes()));
+    check(&tiff, &[&given[..], &["--z-scale", "6.5535"]].concat());
     check(&picture, &[&given[..], &["--z-scale", "6.5535"]].concat());
 }
 
@@ -158,10 +173,8 @@ fn axes_have_ticks_and_letters_outside_of_the_surface() {
         &folder,
         &["sin(x)*y", "--title", "A title", "--levels", "3", "--lines", "both,levels"],
     );
-    assert_eq!(
-        (kinds(&strokes), engine.as_str()),
-        (vec!["axis", "grid", "level", "text"], "roberts")
-    );
+    assert_eq!(kinds(&strokes), ["axis", "grid", "level", "text"]);
+    assert_ne!(engine, "max-min");
     let (strokes, engine) = drawn(&folder, &["sin(x)*y", "--title", "A title"]);
     assert_eq!((kinds(&strokes), engine.as_str()), (vec!["axis", "grid", "text"], "max-min"));
     let of = |kind: &str| strokes.iter().filter(|s| s["kind"] == kind).count();
@@ -197,6 +210,7 @@ fn bad_input_is_told_in_one_line() {
         (b"", "no heights in the file"),
         (b"\x93NUMPY\x01\x00\xff", "NPY: the file ends early"),
         (b"\x89PNG\r\n\x1a\n", "PNG: "),
+        (b"II*\0\xff\xff\xff\xff", "TIFF: "),
         (b"ncols 2\nnrows 2\ncellsize 1\n1 2 3\n", "3 heights for 2 × 2 cells"),
         (b"\xff\xfe\x00", "not a text of numbers"),
     ] {
@@ -209,6 +223,77 @@ fn bad_input_is_told_in_one_line() {
     ] {
         fails(&with_file(content), &["--points", "heights"], 1, message);
     }
+}
+
+#[test]
+fn a_domain_has_a_smooth_rim_that_is_drawn() {
+    let folder = with_file("");
+    let disc = ["0.1", "--where", "x^2+y^2<=4", "--x=-3:3", "--y=-3:3", "--samples", "13"];
+    let view = ["--eye", "0,0,10", "--target", "0,0,0.1", "--aspect", "data"];
+    let (strokes, engine) = drawn(&folder, &[&disc[..], &view].concat());
+    assert_ne!(engine, "max-min");
+    assert_eq!(kinds(&strokes), ["boundary", "grid"]);
+    let mut n_rim = 0;
+    for stroke in strokes.iter().filter(|stroke| stroke["kind"] == "boundary") {
+        for point in stroke["points"].as_array().expect("points") {
+            let (x, y) = (point[0].as_f64().expect("x"), point[1].as_f64().expect("y"));
+            // The distance of the eye from the disc is 9.9.
+            assert!((x.hypot(y) * 9.9 - 2.0).abs() < 1e-12, "{x} {y}");
+            n_rim += 1;
+        }
+    }
+    assert!(n_rim > 60, "{n_rim}");
+    fails(&folder, &["x", "--where", "x <"], 2, "in --where, column");
+    fails(&folder, &["x", "--where", "x > 9"], 1, "no sample has a height");
+}
+
+#[test]
+fn undersides_are_told_apart_by_both_kinds_of_engines() {
+    let folder = with_file("");
+    // The eye is below the hills' tops and above their feet.
+    let hills = ["sin(2*x)*cos(1.7*y)", "--samples", "31x29", "--exact", "--underside"];
+    let view = ["--eye", "4,-9,-1", "--target", "0,0,0"];
+    let length_below = |engine: &str| -> (f64, f64) {
+        let (strokes, _) = drawn(&folder, &[&hills[..], &view, &["--engine", engine]].concat());
+        let (below, above): (Vec<_>, Vec<_>) =
+            strokes.into_iter().partition(|stroke| stroke["side"] == "lower");
+        let length = |list: &[Value]| -> f64 {
+            segments(list).iter().map(|s| (s[2] - s[0]).hypot(s[3] - s[1])).sum()
+        };
+        (length(&below), length(&above))
+    };
+    let (below, above) = length_below("max-min");
+    let (below_mesh, above_mesh) = length_below("appel");
+    assert!(below > 0.1 && above > 0.1, "{below} {above}");
+    assert!((below - below_mesh).abs() < 1e-6 * below, "{below} {below_mesh}");
+    assert!((above - above_mesh).abs() < 1e-6 * above, "{above} {above_mesh}");
+    let folder = with_file("");
+    let plot = ["x", "--samples", "5", "--underside", "--elevation=-40", "--no-axes"];
+    let svg = run(&folder, &plot).stdout;
+    let svg = String::from_utf8(svg).expect("an SVG");
+    assert!(svg.contains("2 underside"), "{svg}");
+}
+
+#[test]
+fn lines_follow_the_function_as_closely_as_asked() {
+    let folder = with_file("");
+    let arc = ["sqrt(100 - x^2)", "--samples", "9", "--aspect", "data", "--lines", "x"];
+    let n_points = |smoothness: &str| -> usize {
+        let (strokes, _) = drawn(&folder, &[&arc[..], &["--smoothness", smoothness]].concat());
+        strokes.iter().map(|s| s["points"].as_array().map_or(0, Vec::len)).sum()
+    };
+    let (rough, fine, finer) = (n_points("0"), n_points("0.1"), n_points("0.02"));
+    assert!(rough < fine && fine < finer, "{rough} {fine} {finer}");
+}
+
+#[test]
+fn what_the_near_plane_cuts_goes_to_a_mesh_engine() {
+    let folder = with_file("");
+    let near = ["0*x", "--samples", "9", "--eye", "0,0,1", "--target", "0,4,1", "--near", "0.1"];
+    let (_, engine) = drawn(&folder, &[&near[..], &["--exact"]].concat());
+    assert_ne!(engine, "max-min");
+    let by_grid = [&near[..], &["--exact", "--engine", "max-min"]].concat();
+    fails(&folder, &by_grid, 1, "the near plane cuts the surface");
 }
 
 fn fails(folder: &TempDir, arguments: &[&str], code: i32, message: &str) {

@@ -1,0 +1,22 @@
+//! A hat: sin r / r.
+
+mod sheet;
+
+use hiddenline::formula::{Formula, Variables};
+use hiddenline::plot::Plot;
+use hiddenline::surface::Grid;
+
+use sheet::{Result, grid_plot, save, seen_from};
+
+pub(crate) fn plot() -> Result<Plot> {
+    let formula = Formula::parse("sinc(r)", Variables::Plane)?;
+    let range = (-12.0, 12.0);
+    // Sampled finely for smooth curves.
+    let mut grid = Grid::sample(&formula, range, range, (241, 241))?;
+    grid.scale_heights(8.0);
+    grid_plot("Sinc hat", &grid, 4, seen_from(-60.0, 28.0))
+}
+
+fn main() -> Result<()> {
+    save("surface_sinc", &plot()?)
+}

@@ -1,0 +1,21 @@
+//! A sphere by meridians and circles of latitude.
+
+mod sheet;
+
+use glam::DVec3;
+use hiddenline::plot::Plot;
+
+use sheet::{Result, parametric_plot, save, seen_from};
+
+pub(crate) fn plot() -> Result<Plot> {
+    let point = |u: f64, v: f64| {
+        let (longitude, latitude) = (u * std::f64::consts::TAU, (v - 0.5) * std::f64::consts::PI);
+        let r = libm::cos(latitude);
+        DVec3::new(r * libm::cos(longitude), r * libm::sin(longitude), libm::sin(latitude))
+    };
+    parametric_plot("Sphere", (193, 97), 4, seen_from(-60.0, 25.0), point)
+}
+
+fn main() -> Result<()> {
+    save("surface_sphere", &plot()?)
+}

@@ -1,0 +1,244 @@
+//! The surface that is drawn: read, sampled, scaled.
+
+use std::error::Error;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use hiddenline::engines::surface::max_min;
+use hiddenline::formula::Formula;
+use hiddenline::surface::{
+    Grid, Holes, MAX_SAMPLES, TrimmedGrid, close_seams, delaunay, evenly, read_heights, read_points,
+};
+
+use hiddenline::view::Camera;
+
+use super::Job;
+use super::args::{Aspect, EngineName};
+
+/// Height of the drawn box as a part of the longer side of its base, with `--aspect box`.
+const BOX_HEIGHT: f64 = 0.4;
+
+/// The range of x and y that a formula is drawn over, unless given.
+const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
+
+/// Where the surface comes from.
+pub(super) enum Input {
+    Formulas {
+        texts: Vec<String>,
+        formulas: Vec<Formula>,
+        domain: Option<Formula>,
+        samples: (usize, usize),
+    },
+    File(PathBuf),
+    Points(PathBuf),
+    Parametric {
+        formulas: Vec<Formula>,
+        u: (f64, f64),
+        v: (f64, f64),
+        samples: (usize, usize),
+    },
+}
+
+/// The surface that is drawn.
+pub(super) enum Surface {
+    /// One or more, over the same x and y.
+    Grids(Vec<Grid>),
+    /// One or more, each over a part of the plane.
+    Trimmed(Vec<TrimmedGrid>),
+    Points {
+        points: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+    },
+    Lattice {
+        n_columns: usize,
+        points: Vec<DVec3>,
+    },
+}
+
+impl Surface {
+    /// Box around all points; holes do not count.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut add = |p: DVec3| bounds = (bounds.0.min(p), bounds.1.max(p));
+        match self {
+            Self::Grids(grids) => {
+                for grid in grids {
+                    let (xs, ys) = (grid.xs(), grid.ys());
+                    if let Some((low, high)) = grid.heights() {
+                        add(DVec3::new(xs[0], ys[0], low));
+                        add(DVec3::new(xs[xs.len() - 1], ys[ys.len() - 1], high));
+                    }
+                }
+            }
+            Self::Trimmed(grids) => {
+                for trimmed in grids {
+                    let grid = trimmed.grid();
+                    let n = grid.zs().len() as u32;
+                    let inside = (0..n).map(|k| grid.point(k)).filter(|p| !p.z.is_nan());
+                    inside.chain(trimmed.rim()).for_each(&mut add);
+                }
+            }
+            Self::Points { points, .. } | Self::Lattice { points, .. } => {
+                points.iter().filter(|p| p.is_finite()).for_each(|p| add(*p));
+            }
+        }
+        bounds
+    }
+
+    pub(super) fn scale_heights(&mut self, factor: f64) {
+        match self {
+            Self::Grids(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
+            Self::Trimmed(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
+            Self::Points { points, .. } | Self::Lattice { points, .. } => {
+                points.iter_mut().for_each(|p| p.z *= factor);
+            }
+        }
+    }
+
+    /// The grid, if it is all there is and an engine for grids is to draw it.
+    ///
+    /// Fails when that engine was asked for but cannot draw what the near plane leaves of it.
+    pub(super) fn only_grid(&self, job: &Job, camera: &Camera) -> Result<Option<&Grid>, String> {
+        let Some(grid) = self.candidate(job) else {
+            return Ok(None);
+        };
+        if max_min::is_clear_of_near_plane(grid, camera) {
+            return Ok(Some(grid));
+        }
+        match job.engine {
+            EngineName::Auto => Ok(None),
+            _ => Err("the near plane cuts the surface: give --engine auto".into()),
+        }
+    }
+
+    fn candidate(&self, job: &Job) -> Option<&Grid> {
+        let needs_mesh = job.levels.is_some() || job.folds || job.border || job.all_edges;
+        match (self, job.engine) {
+            (_, EngineName::Roberts | EngineName::Appel) => None,
+            (Self::Grids(grids), EngineName::Auto) => {
+                let grid = grids.first().filter(|_| grids.len() == 1 && !needs_mesh)?;
+                (grid.holes() == Holes::None).then_some(grid)
+            }
+            (Self::Grids(grids), _) => grids.first(),
+            _ => None,
+        }
+    }
+
+    /// All samples that are on lines: how many are in a row, how many there are, and each of them.
+    pub(super) fn lattices(&self) -> Vec<(usize, usize, Box<dyn Fn(usize) -> DVec3 + '_>)> {
+        let grid = |grid: &'_ Grid| (grid.xs().len(), grid.zs().len());
+        fn points(grid: &Grid) -> Box<dyn Fn(usize) -> DVec3 + '_> {
+            Box::new(|k| grid.point(k as u32))
+        }
+        match self {
+            Self::Grids(grids) => grids.iter().map(|g| (grid(g).0, grid(g).1, points(g))).collect(),
+            Self::Trimmed(grids) => {
+                let grids = grids.iter().map(TrimmedGrid::grid);
+                grids.map(|g| (grid(g).0, grid(g).1, points(g))).collect()
+            }
+            Self::Lattice { n_columns, points } => {
+                vec![(*n_columns, points.len(), Box::new(|k| points[k]))]
+            }
+            Self::Points { .. } => Vec::new(),
+        }
+    }
+
+    pub(super) fn described(&self) -> String {
+        let size = |grid: &Grid| format!("{} × {} samples", grid.xs().len(), grid.ys().len());
+        match self {
+            Self::Grids(grids) => grids.first().map_or_else(String::new, size),
+            Self::Trimmed(grids) => grids.first().map_or_else(String::new, |g| size(g.grid())),
+            Self::Points { points, triangles } => {
+                format!("{} points, {} triangles", points.len(), triangles.len())
+            }
+            Self::Lattice { n_columns, points } => {
+                format!("{} × {} samples", n_columns, points.len() / n_columns)
+            }
+        }
+    }
+}
+
+fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    if path.as_os_str() == "-" {
+        let mut bytes = Vec::new();
+        io::stdin().lock().read_to_end(&mut bytes)?;
+        Ok(bytes)
+    } else {
+        std::fs::read(path)
+    }
+}
+
+/// The surface with `refined` times as many cells along both axes as asked for, if it is given by
+/// formulas, and the factor that its heights were multiplied by.
+pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn Error>> {
+    let finely = |(u, v): (usize, usize)| {
+        let finer = |n: usize| (n - 1).saturating_mul(refined).saturating_add(1);
+        (finer(u), finer(v))
+    };
+    let failed = |path: &Path, error: &dyn Error| format!("{}: {error}", path.display());
+    let mut surface = match &job.input {
+        Input::Formulas { formulas, domain, samples, .. } => {
+            let samples = finely(*samples);
+            let x = job.placement.x.unwrap_or(DEFAULT_RANGE);
+            let y = job.placement.y.unwrap_or(DEFAULT_RANGE);
+            let formulas = formulas.iter();
+            match domain {
+                None => {
+                    let sample = |formula| Grid::sample(formula, x, y, samples);
+                    Surface::Grids(formulas.map(sample).collect::<Result<_, _>>()?)
+                }
+                Some(domain) => {
+                    let sample = |formula| TrimmedGrid::sample(formula, domain, x, y, samples);
+                    let grids = formulas.map(sample).collect::<Result<Vec<_>, _>>()?;
+                    if grids.iter().all(TrimmedGrid::is_whole) {
+                        Surface::Grids(grids.iter().map(|g| g.grid().clone()).collect())
+                    } else {
+                        Surface::Trimmed(grids)
+                    }
+                }
+            }
+        }
+        Input::File(path) => {
+            let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
+            let grid = read_heights(&bytes, job.placement);
+            Surface::Grids(vec![grid.map_err(|error| failed(path, &error))?])
+        }
+        Input::Points(path) => {
+            let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
+            let points = read_points(&String::from_utf8_lossy(&bytes));
+            let points = points.map_err(|error| failed(path, &error))?;
+            let triangles = delaunay(&points).map_err(|error| failed(path, &error))?;
+            Surface::Points { points, triangles }
+        }
+        Input::Parametric { formulas, u, v, samples } => {
+            let samples = finely(*samples);
+            if samples.0.checked_mul(samples.1).is_none_or(|n| n > MAX_SAMPLES) {
+                let (u, v) = samples;
+                return Err(format!("{u} × {v} samples are more than {MAX_SAMPLES}").into());
+            }
+            let us = evenly(u.0, u.1, samples.0);
+            let mut points = Vec::with_capacity(samples.0 * samples.1);
+            for v in evenly(v.0, v.1, samples.1) {
+                let mut rows = [(); 3].map(|()| vec![0.0; us.len()]);
+                for (formula, row) in formulas.iter().zip(&mut rows) {
+                    formula.values(&us, &vec![v; us.len()], row);
+                }
+                points
+                    .extend((0..us.len()).map(|i| DVec3::new(rows[0][i], rows[1][i], rows[2][i])));
+            }
+            close_seams(us.len(), &mut points);
+            Surface::Lattice { n_columns: us.len(), points }
+        }
+    };
+    let (low, high) = surface.bounds();
+    if low.x > high.x {
+        return Err("no sample has a height: nothing to draw".into());
+    }
+    let size = high - low;
+    let fitted = BOX_HEIGHT * size.x.max(size.y) / size.z;
+    let fits = job.aspect == Aspect::Box && fitted.is_finite() && fitted > 0.0;
+    let factor = if fits { fitted } else { 1.0 } * job.z_scale;
+    surface.scale_heights(factor);
+    Ok((surface, factor))
+}
