@@ -128,7 +128,7 @@ pub struct ImagePoint {
 
 impl ImagePoint {
     /// The image of the point at `d` from the eye.
-    fn new(d: DVec3, camera: &Camera, frame: &Frame) -> Self {
+    pub(crate) fn new(d: DVec3, camera: &Camera, frame: &Frame) -> Self {
         let depth = d.dot(frame.forward);
         let w = match camera.projection() {
             Projection::Perspective { .. } => depth,

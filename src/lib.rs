@@ -26,6 +26,9 @@
 //!                                               writers ─► bytes
 //! ```
 //!
+//! Beside it goes a quick way to a picture: [`engines::image`] says which face each pixel shows,
+//! [`preview`] shades it.
+//!
 //! [`draw`] runs the stages from scene to strokes; [`predicates`] make every decision on the way.
 //! To read the code, take the modules in the order below.
 //!
@@ -89,5 +92,7 @@ pub mod optimize;
 pub mod page;
 
 pub mod writers;
+
+pub mod preview;
 
 pub mod stats;

@@ -61,7 +61,7 @@ pub(super) struct DrawArgs {
 
 #[derive(Args)]
 #[command(next_help_heading = "Model")]
-struct ModelArgs {
+pub(super) struct ModelArgs {
     /// Files to draw: .obj, .stl, .ply, .off; `-` is standard input
     #[arg(value_name = "MODEL", required = true)]
     models: Vec<PathBuf>,
@@ -357,17 +357,22 @@ enum SvgElement {
 
 /// What is to be done, with nothing left to check but what depends on the files.
 pub(super) struct Job {
-    pub(super) models: Vec<PathBuf>,
-    /// One for each model.
-    pub(super) poses: Vec<Pose>,
-    pub(super) input_format: Option<ModelFormat>,
-    pub(super) arrangement: Arrangement,
+    pub(super) files: ModelFiles,
     pub(super) view: ViewSource,
     pub(super) draw: DrawOptions,
     pub(super) page: PageOptions,
     pub(super) pen_width_mm: f64,
     pub(super) dash: Dash,
     pub(super) output: OutputOptions,
+}
+
+/// The models, and how they become one scene.
+pub(super) struct ModelFiles {
+    pub(super) models: Vec<PathBuf>,
+    /// One for each model.
+    pub(super) poses: Vec<Pose>,
+    pub(super) input_format: Option<ModelFormat>,
+    pub(super) arrangement: Arrangement,
 }
 
 /// Where the drawing goes, and what is told on the way.
@@ -399,22 +404,11 @@ impl DrawArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { model, camera, lines, page, output } = self;
-        if model.models.iter().filter(|path| is_dash(path)).count() > 1 {
-            return Err("standard input (-) can be read only once".into());
-        }
+        let files = model.files()?;
         let output = output.options(lines.exact)?;
         let apart_by_kind = output.format == Format::Json || output.plotting.has_pens_by_kind();
         Ok(Job {
-            poses: model.poses()?,
-            input_format: model.input_format.map(InputFormat::format),
-            arrangement: Arrangement {
-                up_axis: match model.up_axis {
-                    Axis::Y => UpAxis::Y,
-                    Axis::Z => UpAxis::Z,
-                },
-                weld_distance: model.weld,
-            },
-            models: model.models,
+            files,
             view: camera.view_source(),
             page: page.options(),
             pen_width_mm: page.pen_width,
@@ -426,6 +420,25 @@ impl DrawArgs {
 }
 
 impl ModelArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn files(self) -> Result<ModelFiles, String> {
+        if self.models.iter().filter(|path| is_dash(path)).count() > 1 {
+            return Err("standard input (-) can be read only once".into());
+        }
+        Ok(ModelFiles {
+            poses: self.poses()?,
+            input_format: self.input_format.map(InputFormat::format),
+            arrangement: Arrangement {
+                up_axis: match self.up_axis {
+                    Axis::Y => UpAxis::Y,
+                    Axis::Z => UpAxis::Z,
+                },
+                weld_distance: self.weld,
+            },
+            models: self.models,
+        })
+    }
+
     /// Where each model goes; the error is a message about usage.
     fn poses(&self) -> Result<Vec<Pose>, String> {
         let n_models = self.models.len();

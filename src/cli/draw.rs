@@ -16,7 +16,7 @@ use hiddenline::strokes::{Drawing, StrokeKind};
 use hiddenline::view::Camera;
 use hiddenline::writers::json;
 
-use super::args::{Job, ViewSource};
+use super::args::{Job, ModelFiles, ViewSource};
 use super::paper::{Notes, Run, check_terminal};
 use super::progress::Progress;
 use super::{config, source};
@@ -33,7 +33,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 
     let progress = Progress::new(job.output.quiet);
     progress.stage("reading");
-    let (mesh, notes) = timed(&mut seconds.read, || read_models(job))?;
+    let (mesh, notes) = timed(&mut seconds.read, || read_models(&job.files))?;
     let bounds = mesh.bounds().unwrap_or_default();
     let camera = match &job.view {
         ViewSource::Framing(framing) => framing.camera(bounds)?,
@@ -64,24 +64,24 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     )
 }
 
-fn read_models(job: &Job) -> Result<(Mesh, Notes), Box<dyn Error>> {
+pub(super) fn read_models(files: &ModelFiles) -> Result<(Mesh, Notes), Box<dyn Error>> {
     let mut notes = Notes::default();
-    let mut models = Vec::with_capacity(job.models.len());
+    let mut models = Vec::with_capacity(files.models.len());
     let mut repairs = Repairs::default();
-    for (path, &pose) in job.models.iter().zip(&job.poses) {
-        let model = read_file(path, job.input_format)?;
+    for (path, &pose) in files.models.iter().zip(&files.poses) {
+        let model = read_file(path, files.input_format)?;
         notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
         repairs += model.repairs;
         models.push((model.mesh, pose));
     }
-    let (mesh, arranged) = job.arrangement.arrange(models)?;
+    let (mesh, arranged) = files.arrangement.arrange(models)?;
     repairs += arranged;
     if mesh.n_faces() == 0 {
         return Err("no face is left; give a smaller --weld".into());
     }
     notes.summary = format!(
         "{}: {} vertices, {} faces{}",
-        title(job),
+        title(files),
         mesh.positions().len(),
         mesh.n_faces(),
         described(repairs)
@@ -129,19 +129,19 @@ fn plot_options(job: &Job) -> PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: job.draw.hidden,
         dash: job.dash,
-        title: title(job),
+        title: title(&job.files),
         pens: job.output.plotting.pens_for(&job.draw, job.pen_width_mm),
         source: source::source(config::arguments()),
     }
 }
 
 /// The names of the models, without folders.
-fn title(job: &Job) -> String {
+fn title(files: &ModelFiles) -> String {
     let name = |path: &Path| {
         if path.as_os_str() == "-" {
             return "standard input".to_owned();
         }
         path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
     };
-    job.models.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
+    files.models.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
 }

@@ -9,6 +9,7 @@ mod optimize;
 mod output;
 mod paper;
 mod plotting;
+mod preview;
 mod progress;
 mod source;
 mod surface;
@@ -24,6 +25,7 @@ use clap_complete::Shell;
 
 use self::args::DrawArgs;
 use self::optimize::OptimizeArgs;
+use self::preview::PreviewArgs;
 use self::surface::SurfaceArgs;
 
 /// Exact hidden-line drawings of 3D models, for print and pen plotters
@@ -50,6 +52,8 @@ enum Command {
     Draw(Box<DrawArgs>),
     /// Draw a surface z = f(x, y) by its grid lines, the hidden parts removed
     Surface(Box<SurfaceArgs>),
+    /// Make a shaded picture of models
+    Preview(Box<PreviewArgs>),
     /// Join and order the strokes of any line SVG for a plotter
     Optimize(Box<OptimizeArgs>),
     /// Show settings from configuration files and the environment
@@ -119,6 +123,7 @@ pub(crate) fn run() -> ExitCode {
     let result = match typed.command {
         Command::Draw(args) => started("draw", args.job(), draw::run),
         Command::Surface(args) => started("surface", args.job(), surface::run),
+        Command::Preview(args) => started("preview", args.job(), preview::run),
         Command::Optimize(args) => started("optimize", args.job(), optimize::run),
         Command::Config { command: ConfigCommand::Show { preset } } => {
             config::show(preset.as_deref())

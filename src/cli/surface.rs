@@ -23,8 +23,8 @@ use hiddenline::surface::{Grid, LatticeLines, LinedMesh, Placement};
 use hiddenline::view::{Camera, Projection};
 use hiddenline::writers::Format;
 
-pub(super) use self::args::SurfaceArgs;
 use self::args::{Aspect, EngineName, Levels};
+pub(super) use self::args::{SurfaceArgs, range, samples};
 use self::sheets::{Input, Surface};
 use self::smoothness::Sampled;
 use super::args::{OutputOptions, ViewSource};

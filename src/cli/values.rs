@@ -6,6 +6,7 @@ use glam::DVec3;
 use hiddenline::classify::LineSelection;
 use hiddenline::optimize::Effort;
 use hiddenline::page::{Dash, Drawn, parse_length_mm};
+use hiddenline::preview::LARGEST_SIDE;
 use hiddenline::strokes::StrokeKind;
 
 /// A finite number.
@@ -178,9 +179,29 @@ fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
     })
 }
 
-/// A color by name or as `#rgb`, `#rrggbb`, `rgb(…)`; the result is `#rrggbb`.
-fn color(text: &str) -> Result<String, String> {
+/// The bytes of a color by name or as `#rgb`, `#rrggbb`, `rgb(…)`.
+pub(super) fn rgb(text: &str) -> Result<[u8; 3], String> {
     let color: svgtypes::Color =
         text.parse().map_err(|_| format!("`{text}` is no color; give a name or #rrggbb"))?;
-    Ok(format!("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue))
+    Ok([color.red, color.green, color.blue])
+}
+
+/// Columns and rows of a picture.
+pub(super) fn picture_size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.trim().parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n));
+    let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
+    side(width)
+        .zip(side(height))
+        .ok_or_else(|| format!("give WIDTHxHEIGHT, each from 1 to {LARGEST_SIDE}, as in 1200x900"))
+}
+
+/// A part of the whole, from 0 to 1.
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    not_negative(text).and_then(|x| if x <= 1.0 { Ok(x) } else { Err("at most 1".into()) })
+}
+
+/// A color by name or as `#rgb`, `#rrggbb`, `rgb(…)`; the result is `#rrggbb`.
+fn color(text: &str) -> Result<String, String> {
+    let [red, green, blue] = rgb(text)?;
+    Ok(format!("#{red:02x}{green:02x}{blue:02x}"))
 }

@@ -10,6 +10,7 @@ mod engines;
 mod formula;
 mod gallery;
 mod hidden_levels;
+mod image;
 mod intersections;
 mod laws;
 mod line_svg;

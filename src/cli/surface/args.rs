@@ -225,13 +225,15 @@ fn constant(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
 }
 
-fn range(text: &str) -> Result<(f64, f64), String> {
+/// Two numbers, the smaller first, with a colon between them.
+pub(in crate::cli) fn range(text: &str) -> Result<(f64, f64), String> {
     let (from, to) = text.split_once(':').ok_or("give two numbers, as in -2:2")?;
     let (from, to) = (constant(from)?, constant(to)?);
     if from < to { Ok((from, to)) } else { Err("the first number must be the smaller one".into()) }
 }
 
-fn samples(text: &str) -> Result<(usize, usize), String> {
+/// Numbers of samples along x and y.
+pub(in crate::cli) fn samples(text: &str) -> Result<(usize, usize), String> {
     let number = |text: &str| {
         let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
         if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }

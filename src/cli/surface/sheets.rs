@@ -40,6 +40,9 @@ pub(super) enum Input {
     },
 }
 
+/// Samples on lines: how many are in a row, how many there are, and each of them.
+type Lattice<'s> = (usize, usize, Box<dyn Fn(usize) -> DVec3 + 's>);
+
 /// The surface that is drawn.
 pub(super) enum Surface {
     /// One or more, over the same x and y.
@@ -125,8 +128,8 @@ impl Surface {
         }
     }
 
-    /// All samples that are on lines: how many are in a row, how many there are, and each of them.
-    pub(super) fn lattices(&self) -> Vec<(usize, usize, Box<dyn Fn(usize) -> DVec3 + '_>)> {
+    /// All samples that are on lines, one lattice for each sheet.
+    pub(super) fn lattices(&self) -> Vec<Lattice<'_>> {
         let grid = |grid: &'_ Grid| (grid.xs().len(), grid.zs().len());
         fn points(grid: &Grid) -> Box<dyn Fn(usize) -> DVec3 + '_> {
             Box::new(|k| grid.point(k as u32))

@@ -1,0 +1,368 @@
+//! `hiddenline preview`: from model files to a shaded picture.
+
+use std::error::Error;
+use std::io::{self, IsTerminal};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use hiddenline::classify::LineSelection;
+use hiddenline::draw::{DrawOptions, draw};
+use hiddenline::engines::image::Engine;
+use hiddenline::formula::{Formula, Variables};
+use hiddenline::mesh::Mesh;
+use hiddenline::preview::{self, Options, Pixels, Show};
+use hiddenline::scene::Scene;
+use hiddenline::stats::{Stats, peak_bytes, timed};
+use hiddenline::strokes::StrokeKind;
+use hiddenline::surface::Grid;
+
+use super::args::{CameraArgs, ModelArgs, ModelFiles, ViewSource, is_dash};
+use super::draw::{read_camera, read_models};
+use super::paper::Notes;
+use super::progress::Progress;
+use super::{Refused, messages, output, surface, values};
+
+const EXAMPLES: &str = "\
+Examples:
+  hiddenline preview bunny.stl -o bunny.png
+      A shaded picture from where `draw` looks, too.
+  hiddenline preview house.obj --up-axis y --edges --size 1600x1200 -o house.png
+      With the visible lines on it.
+  hiddenline preview spot.obj --shading smooth --engine a-buffer -o spot.png
+      Curved surfaces, smooth borders.
+  hiddenline preview engine.stl --engine a-buffer --opacity 0.4 -o glass.png
+      As if made of glass.
+  hiddenline preview part.stl --view top --show depth -o heights.png
+      What is nearer is lighter.
+  hiddenline preview part.stl --tone -o tone.png
+      How light each point is, as gray, for hatching.
+  hiddenline preview --expr \"sin(r)/r\" --x=-9:9 --y=-9:9 -o hat.png
+      A surface z = f(x, y).";
+
+/// Largest height of a surface as a part of the longer side of its base.
+const SURFACE_HEIGHT: f64 = 0.4;
+
+/// Make a shaded picture of models
+///
+/// Reads what `draw` reads, looks from where `draw` looks, and writes a PNG, for a look before a pen
+/// begins. All engines but the painter decide each pixel alike.
+#[derive(Args)]
+#[command(after_help = EXAMPLES, mut_arg("models", |models| models.required(false)))]
+pub(super) struct PreviewArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    #[command(flatten)]
+    formula: FormulaArgs,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
+    /// File to write, a PNG; `-` is standard output
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    output: Option<PathBuf>,
+    /// Threads to work with [default: all]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(help_heading = "Output")]
+    threads: Option<u16>,
+    /// Print counts and times as JSON, the last line on standard error
+    #[arg(long, help_heading = "Output")]
+    stats: bool,
+    /// Print nothing but errors
+    #[arg(short, long, help_heading = "Output")]
+    quiet: bool,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Surface")]
+struct FormulaArgs {
+    /// Show the surface z = EXPR, a formula of x, y, r and theta, instead of models
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, conflicts_with = "models")]
+    expr: Option<String>,
+    /// Range of x
+    #[arg(long, value_name = "A:B", value_parser = surface::range, allow_hyphen_values = true)]
+    #[arg(requires = "expr", default_value = "-5:5")]
+    x: (f64, f64),
+    /// Range of y
+    #[arg(long, value_name = "A:B", value_parser = surface::range, allow_hyphen_values = true)]
+    #[arg(requires = "expr", default_value = "-5:5")]
+    y: (f64, f64),
+    /// Samples along both axes, or along x and along y
+    #[arg(long, value_name = "N|NxM", value_parser = surface::samples, requires = "expr")]
+    #[arg(default_value = "200")]
+    samples: (usize, usize),
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Picture")]
+struct PictureArgs {
+    /// Columns and rows
+    #[arg(long, value_name = "WxH", value_parser = values::picture_size)]
+    #[arg(default_value = "1200x900")]
+    size: (u32, u32),
+    /// How it is found what each pixel shows
+    #[arg(long, value_enum, default_value = "z-buffer")]
+    engine: EngineName,
+    /// What is shown
+    #[arg(long, value_enum, default_value = "shaded", conflicts_with = "tone")]
+    show: ShowName,
+    /// Show how light each point is, as gray from 0 to 255; nothing is white
+    #[arg(long, conflicts_with_all = ["paint", "edges"])]
+    tone: bool,
+    /// Whether faces look flat or curved
+    #[arg(long, value_enum, default_value = "flat")]
+    shading: Shading,
+    /// With smooth shading, faces that meet at more than this angle keep their edge
+    #[arg(long, value_name = "DEG", value_parser = values::crease, default_value_t = 40.0)]
+    smooth_angle: f64,
+    /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    light: Option<DVec3>,
+    /// Color of the faces
+    #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
+    #[arg(default_value = "#d8d4c8")]
+    paint: Rgb,
+    /// Color where no face is seen [default: white, but black for numbers]
+    #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
+    background: Option<Rgb>,
+    /// How much of the light behind it a face stops, from 0 to 1; for the a-buffer
+    #[arg(long, value_name = "PART", value_parser = values::part)]
+    opacity: Option<f64>,
+    /// Lay the visible lines of `draw` over it
+    #[arg(long)]
+    edges: bool,
+    /// Kinds of line for --edges, as for `draw`
+    #[arg(long, value_name = "KINDS", value_parser = values::lines, requires = "edges")]
+    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
+    lines: LineSelection,
+    /// Width of these lines in pixels
+    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 1.5)]
+    edge_width: f64,
+    /// Show exactly the field of view instead of the whole scene
+    #[arg(long)]
+    fit_fov: bool,
+}
+
+/// A color.
+type Rgb = [u8; 3];
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum EngineName {
+    /// Keeps a depth for each pixel
+    ZBuffer,
+    /// The same with one row of memory
+    ScanLine,
+    /// Decides for spans between edges
+    Spanning,
+    /// Goes from edge to edge with the faces in order of depth
+    Watkins,
+    /// 16 samples a pixel: smooth borders, and glass with --opacity
+    ABuffer,
+    /// One ray for each pixel
+    RayCast,
+    /// From far to near: wrong where faces cross or overlap in turn
+    Painter,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ShowName {
+    /// Faces in the light
+    Shaded,
+    /// What is nearer is lighter
+    Depth,
+    /// A color for each face
+    Faces,
+    /// Red is right, green is up, blue is towards the viewer
+    Normals,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Shading {
+    Flat,
+    Smooth,
+}
+
+/// What is to be done.
+pub(super) struct Job {
+    input: Input,
+    view: ViewSource,
+    options: Options,
+    edges: Option<LineSelection>,
+    /// `None` is standard output.
+    path: Option<PathBuf>,
+    threads: Option<usize>,
+    engine: String,
+    stats: bool,
+    quiet: bool,
+}
+
+enum Input {
+    Files(ModelFiles),
+    Formula { formula: Formula, x: (f64, f64), y: (f64, f64), samples: (usize, usize) },
+}
+
+impl PreviewArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn job(self) -> Result<Job, Refused> {
+        let Self { model, formula, camera, picture, output, threads, stats, quiet } = self;
+        let input = match formula.expr {
+            Some(text) => Input::Formula {
+                formula: Formula::parse(&text, Variables::Plane)
+                    .map_err(|error| format!("in the formula, {error}"))?,
+                x: formula.x,
+                y: formula.y,
+                samples: formula.samples,
+            },
+            None => Input::Files(model.files()?),
+        };
+        if matches!(&input, Input::Files(files) if files.models.is_empty()) {
+            return Err("give models, or a surface by --expr".into());
+        }
+        let name = picture.engine.to_possible_value();
+        Ok(Job {
+            input,
+            view: camera.view_source(),
+            options: picture.options()?,
+            edges: picture.edges.then_some(picture.lines),
+            path: output.filter(|path| !is_dash(path)),
+            threads: threads.map(usize::from),
+            engine: name.map(|name| name.get_name().to_owned()).unwrap_or_default(),
+            stats,
+            quiet,
+        })
+    }
+}
+
+impl PictureArgs {
+    fn options(&self) -> Result<Options, Refused> {
+        if self.opacity.is_some() && self.engine != EngineName::ABuffer {
+            return Err("--opacity needs --engine a-buffer".into());
+        }
+        let shows_numbers = matches!(self.show, ShowName::Faces);
+        if shows_numbers && self.engine == EngineName::ABuffer {
+            return Err("colors of faces cannot be mixed; give another --engine".into());
+        }
+        let pixels = match self.engine {
+            EngineName::ABuffer => Pixels::Shares { opacity: self.opacity.unwrap_or(1.0) },
+            EngineName::ZBuffer => Pixels::Centers(Engine::ZBuffer),
+            EngineName::ScanLine => Pixels::Centers(Engine::ScanLine),
+            EngineName::Spanning => Pixels::Centers(Engine::Spanning),
+            EngineName::Watkins => Pixels::Centers(Engine::Watkins),
+            EngineName::RayCast => Pixels::Centers(Engine::RayCast),
+            EngineName::Painter => Pixels::Centers(Engine::Painter),
+        };
+        let show = match self.show {
+            _ if self.tone => Show::Tone,
+            ShowName::Shaded => Show::Shaded,
+            ShowName::Depth => Show::Depth,
+            ShowName::Faces => Show::Faces,
+            ShowName::Normals => Show::Normals,
+        };
+        Ok(Options {
+            size: self.size,
+            pixels,
+            show,
+            smooth_deg: (self.shading == Shading::Smooth).then_some(self.smooth_angle),
+            light: self.light,
+            color: self.paint,
+            background: self.background,
+            fit_fov: self.fit_fov,
+            stroke_px: self.edge_width,
+        })
+    }
+}
+
+/// Does the job; the error is a message for the user.
+pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
+    let start = Instant::now();
+    if job.path.is_none() && io::stdout().is_terminal() {
+        return Err("a picture is not for the terminal; give -o FILE".into());
+    }
+    if let Some(threads) = job.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    }
+    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
+    let mut seconds = stats.seconds;
+    let progress = Progress::new(job.quiet);
+    progress.stage("reading");
+    let (mesh, notes) = timed(&mut seconds.read, || job.input.mesh())?;
+    let bounds = mesh.bounds().unwrap_or_default();
+    let camera = match &job.view {
+        ViewSource::Framing(framing) => framing.camera(bounds)?,
+        ViewSource::File(path) => read_camera(path)?,
+    };
+    progress.stage("finding edges");
+    let crosses = job.edges.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
+    let scene = timed(&mut seconds.topology, || {
+        let scene = Scene::new(mesh);
+        if crosses { scene.with_intersections() } else { scene }
+    });
+    stats.seconds = seconds;
+    progress.stage("drawing");
+    let edges = job.edges.map(|lines| {
+        let options = DrawOptions { lines, ..DrawOptions::default() };
+        let scale = job.options.pixel_map(&scene, &camera).scale;
+        // What is a millimetre on paper is about four pixels here.
+        draw(&scene, &camera, &options, |_| scale / 4.0, &mut stats)
+    });
+    progress.stage("shading");
+    let mut seconds = stats.seconds;
+    timed(&mut seconds.write, || -> Result<(), Box<dyn Error>> {
+        let write = |out: &mut dyn io::Write| {
+            preview::write(&scene, &camera, &job.options, edges.as_ref(), out)
+        };
+        match &job.path {
+            Some(path) => output::write_to_file(path, write)
+                .map_err(|error| format!("{}: {error}", path.display()).into()),
+            None => output::write_to_stdout(write).map_err(Into::into),
+        }
+    })?;
+    drop(progress);
+    seconds.total = start.elapsed().as_secs_f64();
+    stats.seconds = seconds;
+    if !job.quiet {
+        notes.warnings.iter().for_each(|warning| messages::warning(warning));
+        let (width, height) = job.options.size;
+        messages::plain(format_args!(
+            "{}; {width} x {height} pixels by {}, {:.2} s",
+            notes.summary, job.engine, seconds.total
+        ));
+    }
+    if job.stats {
+        stats.vertices = scene.mesh().positions().len();
+        stats.faces = scene.mesh().n_faces();
+        stats.triangles = scene.triangles().len();
+        stats.edges = scene.topology().edges().len();
+        stats.strokes = edges.as_ref().map_or(0, |edges| edges.len());
+        stats.points = edges.as_ref().map_or(0, |edges| edges.n_points());
+        stats.peak_bytes = peak_bytes();
+        let mut stats = serde_json::to_value(&stats)?;
+        stats["engine"] = job.engine.clone().into();
+        messages::plain(stats);
+    }
+    Ok(())
+}
+
+impl Input {
+    fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
+        match self {
+            Self::Files(files) => read_models(files),
+            Self::Formula { formula, x, y, samples } => {
+                let mut grid = Grid::sample(formula, *x, *y, *samples)?;
+                let (low, high) =
+                    grid.heights().ok_or("the formula has no value anywhere in the range")?;
+                let side = (x.1 - x.0).max(y.1 - y.0);
+                if high > low {
+                    grid.scale_heights(SURFACE_HEIGHT * side / (high - low));
+                }
+                let (mesh, _) = Mesh::new(grid.to_soup())?;
+                if mesh.n_faces() == 0 {
+                    return Err("the surface has no cell without holes; give more --samples".into());
+                }
+                let summary = format!("surface: {} faces", mesh.n_faces());
+                Ok((mesh, Notes { summary, ..Notes::default() }))
+            }
+        }
+    }
+}

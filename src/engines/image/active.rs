@@ -1,0 +1,71 @@
+//! The edges that a row meets, kept from row to row.
+//!
+//! ```text
+//!   S, by first row:   [e1 e4] [ ] [e2] [e3 e5] …      taken once their row comes
+//!   A, by column:      e4 e1 e2                        left out once it is past
+//! ```
+//!
+//! From row to row an edge moves by its slope (coherence of edges and scan lines); the column is then
+//! put right exactly, so the steps' rounding does not matter.
+
+use std::ops::Range;
+
+use super::edge::PixelEdge;
+use super::raster::{Raster, Strip};
+
+/// An edge and where it meets the row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ActiveEdge {
+    edge: PixelEdge,
+    /// Number in the raster of the triangle that it borders.
+    pub(super) triangle: u32,
+    /// Last row, not included.
+    end: u32,
+    x: f64,
+    /// The first column on its right.
+    pub(super) column: u32,
+}
+
+/// All edges of a strip, and those that the row meets.
+pub(super) struct EdgeTable {
+    /// By first row; the last ones begin first.
+    waiting: Vec<(u32, ActiveEdge)>,
+    active: Vec<ActiveEdge>,
+    width: u32,
+}
+
+impl EdgeTable {
+    /// The edges that the rows of a strip meet. O(edges log edges).
+    pub(super) fn new(raster: &Raster, strip: &Strip) -> Self {
+        let mut waiting = Vec::with_capacity(strip.triangles.len() * 2);
+        for &triangle in strip.triangles {
+            for edge in raster.triangles()[triangle as usize].edges().into_iter().flatten() {
+                let rows: Range<u32> = edge.rows(&strip.rows);
+                if !rows.is_empty() {
+                    let x = edge.estimate(rows.start);
+                    let edge = ActiveEdge { edge, triangle, end: rows.end, x, column: 0 };
+                    waiting.push((rows.start, edge));
+                }
+            }
+        }
+        waiting.sort_by_key(|(row, edge)| std::cmp::Reverse((*row, edge.triangle)));
+        Self { waiting, active: Vec::new(), width: raster.width() }
+    }
+
+    /// The edges that a row meets, from left to right. Rows must be asked for in their order.
+    pub(super) fn advance(&mut self, row: u32) -> &[ActiveEdge] {
+        self.active.retain_mut(|active| {
+            active.x += active.edge.slope();
+            active.end > row
+        });
+        while let Some((_, edge)) = self.waiting.pop_if(|(first, _)| *first <= row) {
+            self.active.push(edge);
+        }
+        for active in &mut self.active {
+            active.column = active.edge.column(row, active.x, self.width);
+        }
+        // Nearly sorted already, which this sort makes use of.
+        self.active.sort_by_key(|active| (active.column, active.triangle));
+        &self.active
+    }
+}

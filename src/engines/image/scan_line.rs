@@ -1,0 +1,47 @@
+//! The scan-line z-buffer: a z-buffer one row high.
+//!
+//! ```text
+//!   row by row: which triangles reach it?          ──A────────A──    pairs of edges, unsorted
+//!     for each of them, its columns a..b              ──B───B──
+//!       nearer than what is kept? keep it          depth of one row, cleared for the next
+//! ```
+//!
+//! Source: lecture notes on visibility (Slovak), section 2.2: the loops of the z-buffer change
+//! places; the pairs of edges are those of the German notes' scan-line z-buffer.
+//! Good for: pictures of any height with the memory of one row.
+
+use super::depth::Depth;
+use super::raster::{Raster, Strip, columns};
+
+/// Fills the `items` of a strip. O(triangles log triangles + pixels they cover).
+pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
+    let width = raster.width();
+    let all = raster.triangles();
+    let mut waiting: Vec<(u32, u32)> = strip
+        .triangles
+        .iter()
+        .map(|&number| (all[number as usize].rows(&strip.rows).start, number))
+        .collect();
+    waiting.sort_unstable_by_key(|&entry| std::cmp::Reverse(entry));
+    let mut active = Vec::new();
+    let mut depths = vec![Depth::default(); width as usize];
+    for (row, items) in strip.rows.clone().zip(items.chunks_exact_mut(width as usize)) {
+        active.retain(|(_, _, end)| *end > row);
+        while let Some((_, number)) = waiting.pop_if(|(first, _)| *first <= row) {
+            let triangle = &all[number as usize];
+            active.push((number, triangle.edges(), triangle.rows(&strip.rows).end));
+        }
+        depths.fill(Depth::default());
+        for (number, edges, _) in &active {
+            let depth = all[*number as usize].plane.row(row);
+            for column in columns(edges, row, width) {
+                let at = column as usize;
+                let depth = depth.at(column);
+                // They are in no order here, so equal depths are told apart by number.
+                if depth > depths[at] || depth == depths[at] && *number < items[at] {
+                    (depths[at], items[at]) = (depth, *number);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! A picture of a scene: shaded faces, their numbers, depth or normals, as PNG.
+//!
+//! ```text
+//!  engines::image ─► triangle of each pixel ─► shade ─► overlay ─► rows of a PNG
+//!                    (a strip of rows)         color    strokes    strip after strip
+//! ```
+//!
+//! Only the strips at work are in memory, so that it does not depend on the height of the picture.
+
+mod overlay;
+mod shade;
+
+use std::io::{self, Write};
+
+use glam::{DVec2, DVec3};
+use png::{BitDepth, ColorType, Compression, Encoder};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use self::overlay::Overlay;
+use self::shade::Shader;
+use crate::engines::image::raster::{Corners, STRIP_ROWS};
+use crate::engines::image::{Engine, PixelMap, Raster, a_buffer, solve_strip};
+use crate::scene::Scene;
+use crate::strokes::Drawing;
+use crate::view::Camera;
+
+/// Columns and rows of a picture, unless set otherwise.
+pub const DEFAULT_SIZE: (u32, u32) = (1200, 900);
+
+/// More columns or rows than this are refused.
+pub const LARGEST_SIDE: u32 = 1 << 16;
+
+/// Empty border around the picture, as a part of its shorter side.
+const MARGIN: f64 = 0.04;
+
+/// What is found for each pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pixels {
+    /// What its center shows.
+    Centers(Engine),
+    /// The shares of all that shows in it, for anti-aliased and transparent pictures; `opacity` is
+    /// from 0 to 1.
+    Shares {
+        /// How much of the light behind it a triangle stops.
+        opacity: f64,
+    },
+}
+
+/// What a picture shows of the triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Show {
+    /// Their color in the light.
+    #[default]
+    Shaded,
+    /// How light they are, as gray: 0 black, 255 white; without color. Nothing is white.
+    Tone,
+    /// How near they are: the nearest point of the scene white, the farthest dark.
+    Depth,
+    /// Which face they are part of: each face has a color of its own.
+    Faces,
+    /// Their normal, turned to the viewer: red is right, green is up, blue is towards the viewer.
+    Normals,
+}
+
+impl Show {
+    /// What is where no face is seen, unless set otherwise.
+    fn background(self) -> [u8; 3] {
+        match self {
+            Self::Shaded | Self::Tone => [255; 3],
+            Self::Depth | Self::Faces | Self::Normals => [0; 3],
+        }
+    }
+}
+
+/// How a picture is made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Columns and rows.
+    pub size: (u32, u32),
+    /// How pixels are decided.
+    pub pixels: Pixels,
+    /// What is shown.
+    pub show: Show,
+    /// Faces that meet at this angle, in degrees, or less look like one curved surface; `None` for
+    /// flat faces.
+    pub smooth_deg: Option<f64>,
+    /// Where the light comes from, in world directions; `None` for the viewer's left shoulder.
+    pub light: Option<DVec3>,
+    /// Color of the faces.
+    pub color: [u8; 3],
+    /// Where no face is seen; `None` for what suits.
+    pub background: Option<[u8; 3]>,
+    /// Show exactly the vertical field of view instead of the whole scene.
+    pub fit_fov: bool,
+    /// Width of the strokes laid over it, in pixels.
+    pub stroke_px: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            size: DEFAULT_SIZE,
+            pixels: Pixels::Centers(Engine::default()),
+            show: Show::default(),
+            smooth_deg: None,
+            light: None,
+            color: [0xd8, 0xd4, 0xc8],
+            background: None,
+            fit_fov: false,
+            stroke_px: 1.5,
+        }
+    }
+}
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+pub enum PreviewError {
+    /// No pixels, or too many.
+    #[error("a picture of {0} x {1} pixels cannot be made; sides are from 1 to 65536")]
+    Size(u32, u32),
+    /// The stream failed.
+    #[error(transparent)]
+    Write(#[from] io::Error),
+}
+
+impl Options {
+    /// Where points of the image are in the picture.
+    pub fn pixel_map(&self, scene: &Scene, camera: &Camera) -> PixelMap {
+        let of_view = if self.fit_fov { PixelMap::field_of_view(camera, self.size) } else { None };
+        of_view.unwrap_or_else(|| {
+            let bounds = Corners::new(scene, camera).bounds();
+            let bounds = bounds.unwrap_or((DVec2::NEG_ONE, DVec2::ONE));
+            let margin = f64::from(self.size.0.min(self.size.1)) * MARGIN;
+            PixelMap::fitting(bounds, self.size, margin)
+        })
+    }
+}
+
+/// Writes a picture of `scene` as `camera` sees it, with the visible strokes of `edges` on it.
+///
+/// # Errors
+/// See [`PreviewError`].
+pub fn write(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    edges: Option<&Drawing>,
+    out: &mut dyn Write,
+) -> Result<(), PreviewError> {
+    let (width, height) = options.size;
+    let sides = 1..=LARGEST_SIDE;
+    if !(sides.contains(&width) && sides.contains(&height)) {
+        return Err(PreviewError::Size(width, height));
+    }
+    let map = options.pixel_map(scene, camera);
+    let raster = Raster::new(scene, camera, &map, options.size);
+    let fine =
+        matches!(options.pixels, Pixels::Shares { .. }).then(|| raster.finer(a_buffer::SIDE));
+    let shader = Shader::new(scene, camera, &map, &raster, options);
+    let rows_of_strip = if fine.is_some() { STRIP_ROWS / a_buffer::SIDE } else { STRIP_ROWS };
+    let overlay =
+        edges.map(|edges| Overlay::new(edges, &map, options.stroke_px, height, rows_of_strip));
+    let is_gray = matches!(options.show, Show::Tone | Show::Depth) && options.background.is_none();
+
+    let of_strip = |number: usize| -> Vec<u8> {
+        let mut colors = match (&fine, options.pixels) {
+            (Some(fine), Pixels::Shares { opacity }) => shares(fine, number, opacity, &shader),
+            (_, Pixels::Centers(engine)) => centers(&raster, number, engine, &shader),
+            (None, Pixels::Shares { .. }) => Vec::new(),
+        };
+        if let Some(overlay) = &overlay {
+            overlay.draw(number, width, &mut colors);
+        }
+        if is_gray { colors.iter().map(|color| color[0]).collect() } else { colors.concat() }
+    };
+
+    let mut encoder = Encoder::new(out, width, height);
+    encoder.set_color(if is_gray { ColorType::Grayscale } else { ColorType::Rgb });
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    let mut writer = encoder.write_header().map_err(io::Error::from)?;
+    let mut rows = writer.stream_writer().map_err(io::Error::from)?;
+    let n_strips = height.div_ceil(rows_of_strip) as usize;
+    let at_work = rayon::current_num_threads() * STRIPS_A_THREAD;
+    for first in (0..n_strips).step_by(at_work) {
+        let last = (first + at_work).min(n_strips);
+        let strips: Vec<Vec<u8>> = (first..last).into_par_iter().map(of_strip).collect();
+        for strip in strips {
+            rows.write_all(&strip)?;
+        }
+    }
+    rows.finish().map_err(io::Error::from)?;
+    writer.finish().map_err(io::Error::from)?;
+    Ok(())
+}
+
+/// Strips made at once for each thread: more share the work better, fewer take less memory.
+const STRIPS_A_THREAD: usize = 4;
+
+/// The colors of a strip by pixel centers.
+fn centers(raster: &Raster, number: usize, engine: Engine, shader: &Shader) -> Vec<[u8; 3]> {
+    let strip = raster.strip(number);
+    let width = raster.width();
+    let mut items = vec![0; width as usize * strip.rows.len()];
+    solve_strip(raster, &strip, engine, &mut items);
+    let rows = strip.rows.zip(items.chunks_exact(width as usize));
+    rows.flat_map(|(row, items)| {
+        (0..width).zip(items).map(move |(column, &item)| {
+            let center = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+            to_bytes(shader.color(item, center))
+        })
+    })
+    .collect()
+}
+
+/// The colors of a strip by shares.
+fn shares(fine: &Raster, number: usize, opacity: f64, shader: &Shader) -> Vec<[u8; 3]> {
+    let strip = fine.strip(number);
+    let width = fine.width() / a_buffer::SIDE;
+    let (mut column, mut row) = (0, strip.rows.start / a_buffer::SIDE);
+    let mut colors = Vec::new();
+    a_buffer::solve(fine, &strip, opacity, |shares| {
+        let center = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+        let rest = 1.0 - shares.iter().map(|share| share.weight).sum::<f64>();
+        let color = shares
+            .iter()
+            .map(|share| shader.color(share.triangle, center) * share.weight)
+            .fold(shader.background() * rest.max(0.0), |sum, color| sum + color);
+        colors.push(to_bytes(color));
+        column += 1;
+        if column == width {
+            (column, row) = (0, row + 1);
+        }
+    });
+    colors
+}
+
+/// A color with parts from 0 to 1 as bytes.
+fn to_bytes(color: DVec3) -> [u8; 3] {
+    (color * 255.0).round().to_array().map(|part| part.clamp(0.0, 255.0) as u8)
+}

@@ -1,0 +1,224 @@
+//! The color of a triangle at a pixel.
+//!
+//! ```text
+//!            light         tone = ambient + (1 − ambient) · max(0, n · l)
+//!          ╲   ↑ n         n is turned to the viewer, so both sides of a sheet are lit;
+//!         l ╲  │           flat: the triangle's own normal; smooth: the mean of those
+//!            ●─┴────       around each corner, mixed over the triangle
+//! ```
+//!
+//! Lambert's law; mixing normals is Phong's (1975).
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::{Options, Show};
+use crate::engines::image::{NOTHING, PixelMap, Raster};
+use crate::scene::Scene;
+use crate::view::{Camera, Frame, Projection};
+
+/// The tone of what is turned away from the light.
+const AMBIENT: f64 = 0.25;
+
+/// The default light: to the left of the viewer, above, and behind, along right, up and forward.
+const LEFT_SHOULDER: DVec3 = DVec3::new(-0.45, 0.65, -0.85);
+
+/// The color of the farthest point in a picture of depth.
+const FARTHEST: f64 = 0.1;
+
+pub(super) struct Shader<'a> {
+    scene: &'a Scene,
+    raster: &'a Raster,
+    camera: Camera,
+    frame: Frame,
+    map: PixelMap,
+    show: Show,
+    /// Towards the light, of length one.
+    light: DVec3,
+    color: DVec3,
+    background: DVec3,
+    /// For each corner of each triangle; empty for flat shading.
+    normals: Vec<[DVec3; 3]>,
+    /// Least and greatest distance.
+    distances: (f64, f64),
+}
+
+impl<'a> Shader<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        camera: &Camera,
+        map: &PixelMap,
+        raster: &'a Raster,
+        options: &Options,
+    ) -> Self {
+        let frame = camera.frame();
+        let light = options.light.and_then(DVec3::try_normalize);
+        let light = light.unwrap_or_else(|| left_shoulder(&frame));
+        let parts = |color: [u8; 3]| DVec3::from(color.map(f64::from)) / 255.0;
+        let normals = match options.smooth_deg {
+            Some(angle) if matches!(options.show, Show::Shaded | Show::Tone | Show::Normals) => {
+                smooth_normals(scene, angle)
+            }
+            _ => Vec::new(),
+        };
+        let mut distances = (0.0, 0.0);
+        if options.show == Show::Depth {
+            let range = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+            let all = raster.triangles().par_iter().flat_map_iter(|triangle| {
+                let nearness = triangle.corners.map(|corner| triangle.plane.nearness_at(corner));
+                nearness.map(|nearness| raster.distance(nearness))
+            });
+            distances = all
+                .map(|distance| (distance, distance))
+                .reduce(|| (f64::INFINITY, f64::NEG_INFINITY), range);
+        }
+        Self {
+            scene,
+            raster,
+            camera: *camera,
+            frame,
+            map: *map,
+            show: options.show,
+            light,
+            color: parts(options.color),
+            background: parts(options.background.unwrap_or(options.show.background())),
+            normals,
+            distances,
+        }
+    }
+
+    /// What is where no face is seen.
+    pub(super) fn background(&self) -> DVec3 {
+        self.background
+    }
+
+    /// The color of an item at a point of the picture, parts from 0 to 1.
+    pub(super) fn color(&self, item: u32, pixel: DVec2) -> DVec3 {
+        if item == NOTHING {
+            return self.background;
+        }
+        // The item's number holds in the finer raster too, and its number in the scene is the same.
+        let triangle = &self.raster.triangles()[item as usize];
+        match self.show {
+            Show::Shaded => self.color * self.tone(triangle.triangle, pixel),
+            Show::Tone => DVec3::splat(self.tone(triangle.triangle, pixel)),
+            Show::Faces => face_color(self.scene.triangle_faces()[triangle.triangle as usize]),
+            Show::Normals => {
+                let n = self.normal(triangle.triangle, pixel);
+                let Frame { right, upward, forward } = self.frame;
+                DVec3::new(n.dot(right), n.dot(upward), -n.dot(forward)) / 2.0 + 0.5
+            }
+            Show::Depth => {
+                let distance = self.raster.distance(triangle.plane.nearness_at(pixel));
+                let (nearest, farthest) = self.distances;
+                let part = ((distance - nearest) / (farthest - nearest)).clamp(0.0, 1.0);
+                let part = if part.is_nan() { 0.0 } else { part };
+                DVec3::splat(1.0 - part * (1.0 - FARTHEST))
+            }
+        }
+    }
+
+    fn tone(&self, triangle: u32, pixel: DVec2) -> f64 {
+        AMBIENT + (1.0 - AMBIENT) * self.normal(triangle, pixel).dot(self.light).max(0.0)
+    }
+
+    /// The normal that is shaded, of length one, on the side of the viewer.
+    fn normal(&self, triangle: u32, pixel: DVec2) -> DVec3 {
+        let corners = positions(self.scene, triangle);
+        let flat = area_vector(corners);
+        let from = self.camera.eye();
+        let ray = self.ray(pixel);
+        let is_back = match self.camera.projection() {
+            Projection::Perspective { .. } => flat.dot(corners[0] - from) > 0.0,
+            Projection::Orthographic => flat.dot(ray.1) > 0.0,
+        };
+        let normal = match self.normals.get(triangle as usize) {
+            Some(normals) => {
+                // Where the sight line meets the triangle's plane.
+                let t = flat.dot(corners[0] - ray.0) / flat.dot(ray.1);
+                let x = ray.0 + ray.1 * t;
+                let [a, b, c] = corners;
+                let parts =
+                    [[x, b, c], [a, x, c], [a, b, x]].map(|part| area_vector(part).dot(flat));
+                let mixed: DVec3 =
+                    normals.iter().zip(parts).map(|(&normal, part)| normal * part.max(0.0)).sum();
+                if mixed.is_finite() && mixed != DVec3::ZERO { mixed } else { flat }
+            }
+            None => flat,
+        };
+        let normal = normal.normalize_or_zero();
+        if is_back { -normal } else { normal }
+    }
+
+    /// The sight line through a point of the picture: a point and a direction.
+    fn ray(&self, pixel: DVec2) -> (DVec3, DVec3) {
+        let image = (pixel - self.map.origin) / self.map.scale;
+        let aside = self.frame.right * image.x - self.frame.upward * image.y;
+        match self.camera.projection() {
+            Projection::Perspective { .. } => (self.camera.eye(), self.frame.forward + aside),
+            Projection::Orthographic => (self.camera.eye() + aside, self.frame.forward),
+        }
+    }
+}
+
+/// The default light for a camera.
+fn left_shoulder(frame: &Frame) -> DVec3 {
+    let DVec3 { x, y, z } = LEFT_SHOULDER;
+    (frame.right * x + frame.upward * y + frame.forward * z).normalize_or_zero()
+}
+
+fn positions(scene: &Scene, triangle: u32) -> [DVec3; 3] {
+    scene.triangles()[triangle as usize].map(|vertex| scene.mesh().positions()[vertex as usize])
+}
+
+/// Normal of a triangle, twice as long as its area is large.
+fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// For each corner of each triangle the mean normal, by area, of the triangles at that vertex that
+/// meet it at `angle_deg` or less. O(triangles × triangles at a vertex), in parallel.
+fn smooth_normals(scene: &Scene, angle_deg: f64) -> Vec<[DVec3; 3]> {
+    let triangles = scene.triangles();
+    let cosine = libm::cos(angle_deg.clamp(0.0, 180.0).to_radians());
+    let flat: Vec<DVec3> = (0..triangles.len() as u32)
+        .into_par_iter()
+        .map(|triangle| area_vector(positions(scene, triangle)))
+        .collect();
+    let mut starts = vec![0; scene.mesh().positions().len() + 1];
+    for vertex in triangles.iter().flatten() {
+        starts[*vertex as usize + 1] += 1;
+    }
+    for k in 1..starts.len() {
+        starts[k] += starts[k - 1];
+    }
+    let mut next = starts.clone();
+    let mut around = vec![0u32; triangles.len() * 3];
+    for (number, triangle) in (0..).zip(triangles) {
+        for &vertex in triangle {
+            around[next[vertex as usize]] = number;
+            next[vertex as usize] += 1;
+        }
+    }
+    let mean = |own: DVec3, vertex: u32| {
+        let range = starts[vertex as usize]..starts[vertex as usize + 1];
+        let near = around[range].iter().map(|&other| flat[other as usize]);
+        let near = near.filter(|other| own.dot(*other) >= cosine * own.length() * other.length());
+        near.sum::<DVec3>().normalize_or_zero()
+    };
+    triangles
+        .par_iter()
+        .zip(&flat)
+        .map(|(triangle, &own)| triangle.map(|vertex| mean(own, vertex)))
+        .collect()
+}
+
+/// A color for a face; no two of the first 16 million have the same, and none is black.
+pub(super) fn face_color(face: u32) -> DVec3 {
+    /// Odd, so that multiples are all different modulo 2²⁴, and near the golden section, so that
+    /// neighbors differ.
+    const STEP: u32 = 0x9e_3779;
+    let number = face.wrapping_add(1).wrapping_mul(STEP);
+    let part = |shift: u32| f64::from(number >> shift & 0xff) / 255.0;
+    DVec3::new(part(16), part(8), part(0))
+}

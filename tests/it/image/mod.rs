@@ -1,0 +1,46 @@
+//! The image-space engines: all against each other, and against what is known otherwise.
+
+mod a_buffer;
+mod agreement;
+mod judge;
+mod program;
+mod strokes;
+mod warnock;
+
+use crate::engines::{camera, mesh};
+use crate::scenes::Scene as TestScene;
+use glam::DVec2;
+use hiddenline::engines::image::raster::Corners;
+use hiddenline::engines::image::{NOTHING, PixelMap, Raster};
+use hiddenline::mesh::Mesh;
+use hiddenline::read::read_file;
+use hiddenline::scene::Scene;
+use hiddenline::view::Camera;
+use std::path::Path;
+
+/// The scene, as large as fits into a picture.
+fn fitted(scene: &Scene, camera: &Camera, size: (u32, u32)) -> (PixelMap, Raster) {
+    let bounds = Corners::new(scene, camera).bounds().unwrap_or((DVec2::NEG_ONE, DVec2::ONE));
+    let map = PixelMap::fitting(bounds, size, 2.0);
+    (map, Raster::new(scene, camera, &map, size))
+}
+
+fn built(scene: &TestScene) -> (Scene, Camera) {
+    (Scene::new(mesh(scene)), camera(scene))
+}
+
+/// The face that an item is part of.
+fn face(scene: &Scene, raster: &Raster, item: u32) -> Option<u32> {
+    (item != NOTHING)
+        .then(|| scene.triangle_faces()[raster.triangles()[item as usize].triangle as usize])
+}
+
+/// A model, unless the folder of models is missing.
+fn model(name: &str) -> Option<Mesh> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models"));
+    if !folder.is_dir() {
+        eprintln!("no models in {}: skipped", folder.display());
+        return None;
+    }
+    Some(read_file(&folder.join(name), None).unwrap().mesh)
+}
