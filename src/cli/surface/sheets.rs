@@ -56,6 +56,9 @@ pub(super) enum Surface {
     },
 }
 
+/// How many samples are in a row, how many there are, and each of them.
+pub(super) type Lattice<'a> = (usize, usize, Box<dyn Fn(usize) -> DVec3 + 'a>);
+
 impl Surface {
     /// Box around all points; holes do not count.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
@@ -125,8 +128,8 @@ impl Surface {
         }
     }
 
-    /// All samples that are on lines: how many are in a row, how many there are, and each of them.
-    pub(super) fn lattices(&self) -> Vec<(usize, usize, Box<dyn Fn(usize) -> DVec3 + '_>)> {
+    /// The samples that lines run along.
+    pub(super) fn lattices(&self) -> Vec<Lattice<'_>> {
         let grid = |grid: &'_ Grid| (grid.xs().len(), grid.zs().len());
         fn points(grid: &Grid) -> Box<dyn Fn(usize) -> DVec3 + '_> {
             Box::new(|k| grid.point(k as u32))
