@@ -40,9 +40,6 @@ pub(super) enum Input {
     },
 }
 
-/// Samples on lines: how many are in a row, how many there are, and each of them.
-type Lattice<'s> = (usize, usize, Box<dyn Fn(usize) -> DVec3 + 's>);
-
 /// The surface that is drawn.
 pub(super) enum Surface {
     /// One or more, over the same x and y.
@@ -58,6 +55,9 @@ pub(super) enum Surface {
         points: Vec<DVec3>,
     },
 }
+
+/// How many samples are in a row, how many there are, and each of them.
+pub(super) type Lattice<'a> = (usize, usize, Box<dyn Fn(usize) -> DVec3 + 'a>);
 
 impl Surface {
     /// Box around all points; holes do not count.

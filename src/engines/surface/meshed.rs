@@ -15,7 +15,9 @@ use crate::visibility::Visibility;
 pub struct MeshedOptions {
     /// Which mesh engine.
     pub engine: Engine,
-    /// Edges between a front and a back triangle, too.
+    /// Edges between a front and a back triangle, too. They run along sides of triangles, so a
+    /// fold of a smooth surface comes out as a zigzag within one row of cells, which is as narrow
+    /// as the samples are close.
     pub folds: bool,
     /// Edges with only one triangle, too.
     pub border: bool,
@@ -114,8 +116,8 @@ fn is_underside(view: &ViewedScene, edge: u32) -> bool {
             let corners = scene.triangles()[above as usize];
             let ends = scene.line(edge);
             let apex = scene.triangles()[below as usize].into_iter().find(|v| !ends.contains(v));
-            // Depth is positive on the eye's side of a triangle that faces it.
-            apex.is_some_and(|apex| view.sight().depth(corners, apex) == Sign::Positive)
+            // In front of a triangle that faces the eye depth is negative.
+            apex.is_some_and(|apex| view.sight().depth(corners, apex) == Sign::Negative)
         }
         (below, _) => below.is_some(),
     }

@@ -242,7 +242,7 @@ fn a_domain_has_a_smooth_rim_that_is_drawn() {
             n_rim += 1;
         }
     }
-    assert!(n_rim > 60, "{n_rim}");
+    assert!(n_rim > 40, "{n_rim}");
     fails(&folder, &["x", "--where", "x <"], 2, "in --where, column");
     fails(&folder, &["x", "--where", "x > 9"], 1, "no sample has a height");
 }
