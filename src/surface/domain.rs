@@ -22,7 +22,7 @@ use crate::strokes::StrokeKind;
 /// that does not begin at the origin.
 const HALVINGS: u32 = 60;
 
-/// A grid over a domain with a smooth rim; see the [module](self).
+/// A grid over a domain with a smooth rim: where the domain ends is found by halving.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrimmedGrid {
     /// Samples outside of the domain are holes.
@@ -35,7 +35,7 @@ impl TrimmedGrid {
     /// Samples `formula` as [`Grid::sample`] does, but only where `domain` is true and the formula
     /// has a value. Features narrower than a cell may be missed.
     ///
-    /// O(samples + cut edges · [`HALVINGS`]), in parallel.
+    /// O(samples + cut edges · `HALVINGS`), in parallel.
     ///
     /// # Errors
     /// As [`Grid::sample`].
