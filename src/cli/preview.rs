@@ -308,16 +308,14 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     });
     progress.stage("shading");
     let mut seconds = stats.seconds;
-    timed(&mut seconds.write, || -> Result<(), Box<dyn Error>> {
-        let write = |out: &mut dyn io::Write| {
-            preview::write(&scene, &camera, &job.options, edges.as_ref(), out)
-        };
-        match &job.path {
-            Some(path) => output::write_to_file(path, write)
-                .map_err(|error| format!("{}: {error}", path.display()).into()),
-            None => output::write_to_stdout(write).map_err(Into::into),
-        }
-    })?;
+    let write = |out: &mut dyn io::Write| {
+        preview::write(&scene, &camera, &job.options, edges.as_ref(), out, &mut seconds)
+    };
+    match &job.path {
+        Some(path) => output::write_to_file(path, write)
+            .map_err(|error| format!("{}: {error}", path.display()))?,
+        None => output::write_to_stdout(write)?,
+    }
     drop(progress);
     seconds.total = start.elapsed().as_secs_f64();
     stats.seconds = seconds;

@@ -19,9 +19,11 @@ use thiserror::Error;
 
 use self::overlay::Overlay;
 use self::shade::Shader;
+use crate::engines::image::edge::center;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
-use crate::engines::image::{Engine, PixelMap, Raster, a_buffer, solve_strip};
+use crate::engines::image::{Engine, NOTHING, PixelMap, Raster, a_buffer, solve_strip};
 use crate::scene::Scene;
+use crate::stats::{Seconds, timed};
 use crate::strokes::Drawing;
 use crate::view::Camera;
 
@@ -137,7 +139,8 @@ impl Options {
     }
 }
 
-/// Writes a picture of `scene` as `camera` sees it, with the visible strokes of `edges` on it.
+/// Writes a picture of `scene` as `camera` sees it, with the visible strokes of `edges` on it; times
+/// go to `seconds`.
 ///
 /// # Errors
 /// See [`PreviewError`].
@@ -147,6 +150,7 @@ pub fn write(
     options: &Options,
     edges: Option<&Drawing>,
     out: &mut dyn Write,
+    seconds: &mut Seconds,
 ) -> Result<(), PreviewError> {
     let (width, height) = options.size;
     let sides = 1..=LARGEST_SIDE;
@@ -154,20 +158,26 @@ pub fn write(
         return Err(PreviewError::Size(width, height));
     }
     let map = options.pixel_map(scene, camera);
-    let raster = Raster::new(scene, camera, &map, options.size);
-    let fine =
-        matches!(options.pixels, Pixels::Shares { .. }).then(|| raster.finer(a_buffer::SIDE));
-    let shader = Shader::new(scene, camera, &map, &raster, options);
-    let rows_of_strip = if fine.is_some() { STRIP_ROWS / a_buffer::SIDE } else { STRIP_ROWS };
+    // Pixels of the raster along each side of one of the picture.
+    let samples = match options.pixels {
+        Pixels::Centers(_) => 1,
+        Pixels::Shares { .. } => a_buffer::SIDE,
+    };
+    let fine = map.finer(samples);
+    let raster = timed(&mut seconds.classify, || {
+        Raster::new(scene, camera, &fine, (width * samples, height * samples))
+    });
+    let shader =
+        timed(&mut seconds.classify, || Shader::new(scene, camera, &fine, &raster, options));
+    let rows_of_strip = STRIP_ROWS / samples;
     let overlay =
         edges.map(|edges| Overlay::new(edges, &map, options.stroke_px, height, rows_of_strip));
     let is_gray = matches!(options.show, Show::Tone | Show::Depth) && options.background.is_none();
 
     let of_strip = |number: usize| -> Vec<u8> {
-        let mut colors = match (&fine, options.pixels) {
-            (Some(fine), Pixels::Shares { opacity }) => shares(fine, number, opacity, &shader),
-            (_, Pixels::Centers(engine)) => centers(&raster, number, engine, &shader),
-            (None, Pixels::Shares { .. }) => Vec::new(),
+        let mut colors = match options.pixels {
+            Pixels::Shares { opacity } => shares(&raster, number, opacity, &shader),
+            Pixels::Centers(engine) => centers(&raster, number, engine, &shader),
         };
         if let Some(overlay) = &overlay {
             overlay.draw(number, width, &mut colors);
@@ -185,13 +195,13 @@ pub fn write(
     let at_work = rayon::current_num_threads() * STRIPS_A_THREAD;
     for first in (0..n_strips).step_by(at_work) {
         let last = (first + at_work).min(n_strips);
-        let strips: Vec<Vec<u8>> = (first..last).into_par_iter().map(of_strip).collect();
-        for strip in strips {
-            rows.write_all(&strip)?;
-        }
+        let strips: Vec<Vec<u8>> = timed(&mut seconds.visibility, || {
+            (first..last).into_par_iter().map(of_strip).collect()
+        });
+        timed(&mut seconds.write, || strips.iter().try_for_each(|strip| rows.write_all(strip)))?;
     }
-    rows.finish().map_err(io::Error::from)?;
-    writer.finish().map_err(io::Error::from)?;
+    timed(&mut seconds.write, || rows.finish()).map_err(io::Error::from)?;
+    timed(&mut seconds.write, || writer.finish()).map_err(io::Error::from)?;
     Ok(())
 }
 
@@ -204,14 +214,19 @@ fn centers(raster: &Raster, number: usize, engine: Engine, shader: &Shader) -> V
     let width = raster.width();
     let mut items = vec![0; width as usize * strip.rows.len()];
     solve_strip(raster, &strip, engine, &mut items);
-    let rows = strip.rows.zip(items.chunks_exact(width as usize));
-    rows.flat_map(|(row, items)| {
-        (0..width).zip(items).map(move |(column, &item)| {
-            let center = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
-            to_bytes(shader.color(item, center))
-        })
-    })
-    .collect()
+    let mut colors = Vec::with_capacity(items.len());
+    // Along a row often the same triangle is seen.
+    let mut last = (NOTHING, to_bytes(shader.background()));
+    for (row, items) in strip.rows.zip(items.chunks_exact(width as usize)) {
+        for (column, &item) in (0..).zip(items) {
+            if item != last.0 || !shader.is_even() {
+                let center = DVec2::new(center(column), center(row));
+                last = (item, to_bytes(shader.color(item, center)));
+            }
+            colors.push(last.1);
+        }
+    }
+    colors
 }
 
 /// The colors of a strip by shares.
@@ -221,7 +236,7 @@ fn shares(fine: &Raster, number: usize, opacity: f64, shader: &Shader) -> Vec<[u
     let (mut column, mut row) = (0, strip.rows.start / a_buffer::SIDE);
     let mut colors = Vec::new();
     a_buffer::solve(fine, &strip, opacity, |shares| {
-        let center = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+        let center = DVec2::new(center(column), center(row)) * f64::from(a_buffer::SIDE);
         let rest = 1.0 - shares.iter().map(|share| share.weight).sum::<f64>();
         let color = shares
             .iter()
@@ -238,5 +253,6 @@ fn shares(fine: &Raster, number: usize, opacity: f64, shader: &Shader) -> Vec<[u
 
 /// A color with parts from 0 to 1 as bytes.
 fn to_bytes(color: DVec3) -> [u8; 3] {
-    (color * 255.0).round().to_array().map(|part| part.clamp(0.0, 255.0) as u8)
+    // The cast cuts off, and keeps within a byte what is not.
+    (color * 255.0 + 0.5).to_array().map(|part| part as u8)
 }

@@ -64,7 +64,8 @@ impl<'a> Shader<'a> {
         let mut distances = (0.0, 0.0);
         if options.show == Show::Depth {
             let range = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-            let all = raster.triangles().par_iter().flat_map_iter(|triangle| {
+            let all = (0..raster.len() as u32).into_par_iter().flat_map_iter(|item| {
+                let triangle = raster.triangle(item);
                 let nearness = triangle.corners.map(|corner| triangle.plane.nearness_at(corner));
                 nearness.map(|nearness| raster.distance(nearness))
             });
@@ -92,24 +93,29 @@ impl<'a> Shader<'a> {
         self.background
     }
 
+    /// Whether all of a triangle has one color.
+    pub(super) fn is_even(&self) -> bool {
+        self.normals.is_empty() && self.show != Show::Depth
+    }
+
     /// The color of an item at a point of the picture, parts from 0 to 1.
     pub(super) fn color(&self, item: u32, pixel: DVec2) -> DVec3 {
         if item == NOTHING {
             return self.background;
         }
-        // The item's number holds in the finer raster too, and its number in the scene is the same.
-        let triangle = &self.raster.triangles()[item as usize];
+        let number = self.raster.number(item);
         match self.show {
-            Show::Shaded => self.color * self.tone(triangle.triangle, pixel),
-            Show::Tone => DVec3::splat(self.tone(triangle.triangle, pixel)),
-            Show::Faces => face_color(self.scene.triangle_faces()[triangle.triangle as usize]),
+            Show::Shaded => self.color * self.tone(number, pixel),
+            Show::Tone => DVec3::splat(self.tone(number, pixel)),
+            Show::Faces => face_color(self.scene.triangle_faces()[number as usize]),
             Show::Normals => {
-                let n = self.normal(triangle.triangle, pixel);
+                let n = self.normal(number, pixel);
                 let Frame { right, upward, forward } = self.frame;
                 DVec3::new(n.dot(right), n.dot(upward), -n.dot(forward)) / 2.0 + 0.5
             }
             Show::Depth => {
-                let distance = self.raster.distance(triangle.plane.nearness_at(pixel));
+                let distance =
+                    self.raster.distance(self.raster.triangle(item).plane.nearness_at(pixel));
                 let (nearest, farthest) = self.distances;
                 let part = ((distance - nearest) / (farthest - nearest)).clamp(0.0, 1.0);
                 let part = if part.is_nan() { 0.0 } else { part };

@@ -51,7 +51,7 @@ struct Fragment {
 
 /// Calls `pixel` for each pixel of a strip, row by row, with the shares in it.
 ///
-/// `fine` is the picture with [`SIDE`] times as many pixels along each side, see [`Raster::finer`];
+/// `fine` is the picture with [`SIDE`] times as many pixels along each side, see [`finer`](super::PixelMap::finer);
 /// `strip` is one of its strips. Every triangle lets 1 − `opacity` of the light behind it pass.
 /// O(samples covered + fragments log fragments).
 pub fn solve(fine: &Raster, strip: &Strip, opacity: f64, mut pixel: impl FnMut(&[Share])) {
@@ -85,7 +85,7 @@ fn collect(
     heads: &mut [u32],
     fragments: &mut Vec<Fragment>,
 ) {
-    let triangle = &fine.triangles()[number as usize];
+    let triangle = fine.triangle(number);
     let edges = triangle.edges();
     let rows = triangle.rows(&strip.rows);
     if rows.is_empty() {
@@ -152,8 +152,7 @@ impl Resolver<'_> {
         for sample in 0..SAMPLES {
             let (x, y) = (column * SIDE + sample % SIDE, row * SIDE + sample / SIDE);
             let fine = self.fine;
-            let depth =
-                |fragment: &Fragment| fine.triangles()[fragment.triangle as usize].plane.at(x, y);
+            let depth = |fragment: &Fragment| fine.triangle(fragment.triangle).plane.at(x, y);
             let mask = 1 << sample;
             let mut here: Vec<Fragment> =
                 self.list.iter().filter(|fragment| fragment.mask & mask != 0).copied().collect();

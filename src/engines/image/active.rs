@@ -39,7 +39,7 @@ impl EdgeTable {
     pub(super) fn new(raster: &Raster, strip: &Strip) -> Self {
         let mut waiting = Vec::with_capacity(strip.triangles.len() * 2);
         for &triangle in strip.triangles {
-            for edge in raster.triangles()[triangle as usize].edges().into_iter().flatten() {
+            for edge in raster.triangle(triangle).edges().into_iter().flatten() {
                 let rows: Range<u32> = edge.rows(&strip.rows);
                 if !rows.is_empty() {
                     let x = edge.estimate(rows.start);
@@ -62,7 +62,7 @@ impl EdgeTable {
             self.active.push(edge);
         }
         for active in &mut self.active {
-            active.column = active.edge.column(row, active.x, self.width);
+            active.column = active.edge.column_near(row, active.x, self.width);
         }
         // Nearly sorted already, which this sort makes use of.
         self.active.sort_by_key(|active| (active.column, active.triangle));

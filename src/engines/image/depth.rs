@@ -83,12 +83,6 @@ impl DepthPlane {
         let d = point - self.origin.truncate();
         self.origin.z + d.y * self.down + d.x * self.along_row
     }
-
-    /// The plane for a picture with `n` times as many pixels along each side.
-    pub(super) fn finer(&self, n: f64) -> Self {
-        let origin = self.origin * DVec2::splat(n).extend(1.0);
-        Self { origin, along_row: self.along_row / n, down: self.down / n }
-    }
 }
 
 /// Nearness of a triangle along a row of pixels.

@@ -46,6 +46,13 @@ impl PixelEdge {
         from..to
     }
 
+    /// Whether the line through the centers of a row meets the edge.
+    #[inline]
+    pub fn meets(&self, row: u32) -> bool {
+        let y = center(row);
+        self.upper.y <= y && y < self.lower.y
+    }
+
     /// Columns per row.
     pub fn slope(&self) -> f64 {
         self.slope
@@ -58,10 +65,25 @@ impl PixelEdge {
     }
 
     /// The first column whose center is on the edge or right of it, at most `width`.
-    ///
-    /// `estimate` is about where the edge meets the row; the answer does not depend on it.
     #[inline]
-    pub fn column(&self, row: u32, estimate: f64, width: u32) -> u32 {
+    pub fn column(&self, row: u32, width: u32) -> u32 {
+        let estimate = self.estimate(row);
+        // The slope and the way down are off by 2 ε of their sizes each, their product by one more;
+        // it is at most |Δx|, and the sum is rounded once: below 7 ε (|x₁| + |x₂|). The 1 stands for
+        // what underflows.
+        let error = 8.0 * f64::EPSILON * (self.upper.x.abs() + self.lower.x.abs() + 1.0);
+        let column = first_center(estimate, width);
+        let to_right = center(column) - estimate;
+        if error < to_right && to_right < 1.0 - error {
+            return column;
+        }
+        self.column_near(row, estimate, width)
+    }
+
+    /// The same, where the edge is known to meet the row at about `estimate`: the answer does not
+    /// depend on it.
+    #[inline]
+    pub fn column_near(&self, row: u32, estimate: f64, width: u32) -> u32 {
         let mut column = first_center(estimate, width);
         while column > 0 && self.has_on_right(column - 1, row) {
             column -= 1;
@@ -90,6 +112,7 @@ pub fn center(pixel: u32) -> f64 {
 /// The first pixel whose center is at `x` or above, at most `end`.
 #[inline]
 pub fn first_center(x: f64, end: u32) -> u32 {
-    // The cast turns what is negative or not a number into 0.
-    ((x - 0.5).ceil() as u32).min(end)
+    // The cast rounds towards 0 and turns what is negative or not a number into 0.
+    let below = (x - 0.5) as u32;
+    below.saturating_add(u32::from(x - 0.5 > f64::from(below))).min(end)
 }

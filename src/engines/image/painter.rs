@@ -19,11 +19,11 @@ pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
     let mut order: Vec<(Depth, Reverse<u32>)> = strip
         .triangles
         .iter()
-        .map(|&number| (farthest(&raster.triangles()[number as usize]), Reverse(number)))
+        .map(|&number| (farthest(&raster.triangle(number)), Reverse(number)))
         .collect();
     order.sort_unstable();
     for (_, Reverse(number)) in order {
-        let triangle = &raster.triangles()[number as usize];
+        let triangle = raster.triangle(number);
         let edges = triangle.edges();
         for row in triangle.rows(&strip.rows) {
             let start = (row - strip.rows.start) as usize * width as usize;

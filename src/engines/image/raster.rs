@@ -1,8 +1,8 @@
 //! The triangles of a scene in pixels, and the strips of rows that a picture is made of.
 //!
 //! ```text
-//!    (0,0) ┌────────────────► x, columns      strip 0: rows 0 to 31
-//!          │   ╱╲                             strip 1: rows 32 to 63
+//!    (0,0) ┌────────────────► x, columns      strip 0: rows 0 to 15
+//!          │   ╱╲                             strip 1: rows 16 to 31
 //!          │  ╱  ╲                            …
 //!          ▼ ╱────╲                           each knows the triangles that
 //!        y, rows                              may show in it, by number
@@ -25,7 +25,7 @@ use crate::view::{Camera, Projection};
 
 /// Rows of a strip. Fewer list large triangles more often; more leave threads without work and
 /// need more memory.
-pub const STRIP_ROWS: u32 = 32;
+pub const STRIP_ROWS: u32 = 16;
 
 /// The map from the image (y upwards) to pixels (y downwards).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +41,13 @@ impl PixelMap {
     #[inline]
     pub fn pixel(&self, image: DVec2) -> DVec2 {
         DVec2::new(self.origin.x + image.x * self.scale, self.origin.y - image.y * self.scale)
+    }
+
+    /// The map to a picture with `n` times as many pixels along each side. Exact when `n` is a power
+    /// of two.
+    #[must_use]
+    pub fn finer(&self, n: u32) -> Self {
+        Self { scale: self.scale * f64::from(n), origin: self.origin * f64::from(n) }
     }
 
     /// Shows the rectangle between `low` and `high` as large as leaves `margin` pixels on each side.
@@ -95,10 +102,9 @@ impl RasterTriangle {
 /// The columns of a row between the edges of a triangle.
 #[inline]
 pub fn columns(edges: &[Option<PixelEdge>; 3], row: u32, width: u32) -> Range<u32> {
-    let here = row..row + 1;
-    let met = edges.iter().flatten().filter(|edge| !edge.rows(&here).is_empty());
+    let met = edges.iter().flatten().filter(|edge| edge.meets(row));
     let (from, to) = met
-        .map(|edge| edge.column(row, edge.estimate(row), width))
+        .map(|edge| edge.column(row, width))
         .fold((width, 0), |(from, to), column| (from.min(column), to.max(column)));
     from..to.max(from)
 }
@@ -118,7 +124,9 @@ pub struct Strip<'a> {
 pub struct Raster {
     width: u32,
     height: u32,
-    triangles: Vec<RasterTriangle>,
+    /// Corners: x and y in pixels, z is nearness.
+    corners: Vec<DVec3>,
+    items: Vec<Item>,
     /// Where each strip begins in `listed`, and where the last one ends.
     strip_starts: Vec<usize>,
     listed: Vec<u32>,
@@ -126,78 +134,108 @@ pub struct Raster {
     is_perspective: bool,
 }
 
+/// A triangle, by its corners. Small, since there may be millions of which most are used once.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    corners: [u32; 3],
+    /// Its number in the scene.
+    triangle: u32,
+    first_strip: u16,
+    last_strip: u16,
+}
+
+impl Item {
+    /// `None` when no pixel center can be in the triangle.
+    #[inline]
+    fn new(
+        number: u32,
+        indices: [u32; 3],
+        corners: [DVec3; 3],
+        (width, height): (u32, u32),
+    ) -> Option<Self> {
+        let [a, b, c] = corners;
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let rows = first_center(low.y, height)..first_center(high.y, height);
+        let shows = low.is_finite()
+            && high.is_finite()
+            && first_center(low.x, width) < first_center(high.x, width)
+            && !rows.is_empty();
+        shows.then(|| Self {
+            corners: indices,
+            triangle: number,
+            first_strip: (rows.start / STRIP_ROWS) as u16,
+            last_strip: ((rows.end - 1) / STRIP_ROWS) as u16,
+        })
+    }
+}
+
 impl Raster {
-    /// A picture of `size` = (columns, rows). O(triangles + strips they reach).
+    /// A picture of `size` = (columns, rows). O(triangles + strips they reach), in parallel.
+    ///
+    /// Triangles that no pixel center can be in are left out.
     pub fn new(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) -> Self {
         let view = Corners::new(scene, camera);
-        let (right, bottom) = (f64::from(size.0), f64::from(size.1));
-        let triangles: Vec<RasterTriangle> = (0..scene.triangles().len() as u32)
+        let in_pixels =
+            |corner: &ImagePoint| map.pixel(corner.image()).extend(view.nearness(corner));
+        let mut corners: Vec<DVec3> = view.images.par_iter().map(in_pixels).collect();
+        let all = 0..scene.triangles().len() as u32;
+        let is_cut = |triangle: u32| view.is_cut(scene.triangles()[triangle as usize]);
+        // What the near plane leaves of triangles has corners of its own.
+        let mut pieces = Vec::new();
+        let cut: Vec<u32> = all.clone().into_par_iter().filter(|&n| is_cut(n)).collect();
+        for triangle in cut {
+            for piece in view.pieces(triangle).into_iter().flatten() {
+                pieces.push((triangle, corners.len() as u32));
+                corners.extend(piece.iter().map(in_pixels));
+            }
+        }
+        let item = |triangle: u32, indices: [u32; 3]| {
+            let item = Item::new(triangle, indices, indices.map(|k| corners[k as usize]), size);
+            item.filter(|_| !view.is_edge_on(triangle))
+        };
+        let mut items: Vec<Item> = all
             .into_par_iter()
-            .flat_map_iter(|triangle| {
-                view.pieces(triangle).into_iter().flatten().map(move |corners| (triangle, corners))
-            })
-            .filter_map(|(triangle, corners)| {
-                let pixels = corners.map(|corner| map.pixel(corner.image()));
-                let low = pixels[0].min(pixels[1]).min(pixels[2]);
-                let high = pixels[0].max(pixels[1]).max(pixels[2]);
-                let shows = low.is_finite()
-                    && high.is_finite()
-                    && low.cmple(DVec2::new(right, bottom)).all()
-                    && high.cmpge(DVec2::ZERO).all();
-                let nearness = corners.map(|corner| view.nearness(&corner));
-                let lifted = |k: usize| pixels[k].extend(nearness[k]);
-                shows.then(|| RasterTriangle {
-                    corners: pixels,
-                    plane: DepthPlane::through([lifted(0), lifted(1), lifted(2)]),
-                    triangle,
-                })
-            })
+            .filter(|&triangle| !is_cut(triangle))
+            .filter_map(|triangle| item(triangle, scene.triangles()[triangle as usize]))
             .collect();
+        if !pieces.is_empty() {
+            items.extend(pieces.iter().filter_map(|&(n, k)| item(n, [k, k + 1, k + 2])));
+            items.sort_by_key(|item| item.triangle);
+        }
         let is_perspective = view.near.is_some();
-        Self { is_perspective, ..Self::of_triangles(triangles, size) }
+        Self { is_perspective, ..Self::listing(corners, items, size) }
     }
 
-    /// A picture, without perspective, of triangles that are in pixels already.
-    pub fn of_triangles(triangles: Vec<RasterTriangle>, size: (u32, u32)) -> Self {
-        let (width, height) = size;
+    /// A picture, without perspective, of triangles that are in pixels already, z being nearness;
+    /// each with its number.
+    pub fn of_triangles(triangles: &[([DVec3; 3], u32)], size: (u32, u32)) -> Self {
+        let items = (0..).zip(triangles).filter_map(|(k, &(corners, number))| {
+            Item::new(number, [3 * k, 3 * k + 1, 3 * k + 2], corners, size)
+        });
+        let items = items.collect();
+        Self::listing(triangles.iter().flat_map(|(corners, _)| *corners).collect(), items, size)
+    }
+
+    /// Lists the items strip by strip.
+    fn listing(corners: Vec<DVec3>, items: Vec<Item>, (width, height): (u32, u32)) -> Self {
         let n_strips = height.div_ceil(STRIP_ROWS) as usize;
-        let strips = |triangle: &RasterTriangle| {
-            let rows = triangle.rows(&(0..height));
-            let from = (rows.start / STRIP_ROWS) as usize;
-            from..if rows.is_empty() { from } else { rows.end.div_ceil(STRIP_ROWS) as usize }
-        };
+        let strips = |item: &Item| usize::from(item.first_strip)..=usize::from(item.last_strip);
         let mut strip_starts = vec![0; n_strips + 1];
-        for triangle in &triangles {
-            for strip in strips(triangle) {
-                strip_starts[strip + 1] += 1;
-            }
+        for strip in items.iter().flat_map(strips) {
+            strip_starts[strip + 1] += 1;
         }
         for k in 0..n_strips {
             strip_starts[k + 1] += strip_starts[k];
         }
         let mut next = strip_starts.clone();
         let mut listed = vec![0; strip_starts[n_strips]];
-        for (number, triangle) in (0..).zip(&triangles) {
-            for strip in strips(triangle) {
+        for (number, item) in (0..).zip(&items) {
+            for strip in strips(item) {
                 listed[next[strip]] = number;
                 next[strip] += 1;
             }
         }
-        Self { width, height, triangles, strip_starts, listed, is_perspective: false }
-    }
-
-    /// The same picture with `n` times as many pixels along each side, whose strips are those of
-    /// this one divided by `n`. Exact when `n` is a power of two.
-    #[must_use]
-    pub fn finer(&self, n: u32) -> Self {
-        let times = f64::from(n);
-        let triangles = self.triangles.par_iter().map(|triangle| RasterTriangle {
-            corners: triangle.corners.map(|corner| corner * times),
-            plane: triangle.plane.finer(times),
-            ..*triangle
-        });
-        let finer = Self::of_triangles(triangles.collect(), (self.width * n, self.height * n));
-        Self { is_perspective: self.is_perspective, ..finer }
+        Self { width, height, corners, items, strip_starts, listed, is_perspective: false }
     }
 
     /// The distance along the direction of view for a nearness, up to a constant.
@@ -215,9 +253,32 @@ impl Raster {
         self.height
     }
 
-    /// The triangles that may show, and pieces of those that the near plane cuts.
-    pub fn triangles(&self) -> &[RasterTriangle] {
-        &self.triangles
+    /// Number of triangles that may show, pieces of those that the near plane cuts among them.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// The triangle of an item; panics when there is none of that number. A few divisions.
+    #[inline]
+    pub fn triangle(&self, item: u32) -> RasterTriangle {
+        let item = &self.items[item as usize];
+        let corners = item.corners.map(|corner| self.corners[corner as usize]);
+        RasterTriangle {
+            corners: corners.map(DVec3::truncate),
+            plane: DepthPlane::through(corners),
+            triangle: item.triangle,
+        }
+    }
+
+    /// The number in the scene of an item's triangle; panics when there is no such item.
+    #[inline]
+    pub fn number(&self, item: u32) -> u32 {
+        self.items[item as usize].triangle
     }
 
     /// Number of strips.
@@ -264,12 +325,24 @@ impl<'a> Corners<'a> {
         Self { scene, sight: Sight::new(positions, camera), images, near, farthest }
     }
 
+    /// Whether the eye is in the plane of a triangle. Exact.
+    #[inline]
+    fn is_edge_on(&self, triangle: u32) -> bool {
+        let [p, q, r] = self.scene.triangles()[triangle as usize];
+        self.sight.turn(p, q, r) == Sign::Zero
+    }
+
+    /// Whether the near plane takes off a part of a triangle, or all of it.
+    #[inline]
+    fn is_cut(&self, vertices: [u32; 3]) -> bool {
+        self.near.is_some_and(|near| vertices.iter().any(|&v| self.images[v as usize].w < near))
+    }
+
     /// The corners of what the near plane leaves of a triangle: up to two triangles. Nothing when it
     /// is edge-on.
     pub fn pieces(&self, triangle: u32) -> [Option<[ImagePoint; 3]>; 2] {
         let vertices = self.scene.triangles()[triangle as usize];
-        let [p, q, r] = vertices;
-        if self.sight.turn(p, q, r) == Sign::Zero {
+        if self.is_edge_on(triangle) {
             return [None, None];
         }
         let corners = vertices.map(|vertex| self.images[vertex as usize]);
@@ -316,14 +389,5 @@ impl<'a> Corners<'a> {
             .map(|corner| (corner.image(), corner.image()))
             .reduce(|| nothing, joined);
         (low.is_finite() && high.is_finite()).then_some((low, high))
-    }
-}
-
-/// A triangle with corners in pixels and their nearness.
-pub fn triangle_in_pixels(corners: [DVec3; 3], triangle: u32) -> RasterTriangle {
-    RasterTriangle {
-        corners: corners.map(DVec3::truncate),
-        plane: DepthPlane::through(corners),
-        triangle,
     }
 }

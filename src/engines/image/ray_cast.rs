@@ -26,7 +26,7 @@ const LEAF: usize = 4;
 
 /// Fills the `items` of a strip. O(triangles log triangles + pixels × boxes met).
 pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
-    let tree = Tree::new(raster.triangles(), strip.triangles.to_vec());
+    let tree = Tree::new(strip.triangles.iter().map(|&n| (n, raster.triangle(n))).collect());
     for (row, items) in strip.rows.clone().zip(items.chunks_exact_mut(raster.width() as usize)) {
         for (column, item) in (0..).zip(items) {
             if let Some(number) = tree.nearest(column, row) {
@@ -42,39 +42,36 @@ struct Node {
     low: DVec2,
     high: DVec2,
     nearest: Depth,
-    /// The part of the numbers that it holds.
+    /// The part of the triangles that it holds.
     from: u32,
     to: u32,
     /// The second half's node, the first's being the next; 0 for a leaf.
     second: u32,
 }
 
-struct Tree<'a> {
-    triangles: &'a [RasterTriangle],
-    numbers: Vec<u32>,
+struct Tree {
+    /// With their numbers in the raster.
+    triangles: Vec<(u32, RasterTriangle)>,
     nodes: Vec<Node>,
 }
 
-impl<'a> Tree<'a> {
-    fn new(triangles: &'a [RasterTriangle], numbers: Vec<u32>) -> Self {
-        let mut tree = Self { triangles, numbers, nodes: Vec::new() };
-        let n = tree.numbers.len();
+impl Tree {
+    fn new(triangles: Vec<(u32, RasterTriangle)>) -> Self {
+        let mut tree = Self { triangles, nodes: Vec::new() };
+        let n = tree.triangles.len();
         if n > 0 {
             tree.build(0, n);
         }
         tree
     }
 
-    /// The node of some of the numbers, and of its halves.
+    /// The node of some of the triangles, and of its halves.
     fn build(&mut self, from: usize, to: usize) -> u32 {
-        let triangles = self.triangles;
-        let boxed = |number: &u32| bounds(&triangles[*number as usize]);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let mut nearest = Depth::default();
-        for number in &self.numbers[from..to] {
-            let (own_low, own_high) = boxed(number);
+        for (_, triangle) in &self.triangles[from..to] {
+            let (own_low, own_high) = bounds(triangle);
             (low, high) = (low.min(own_low), high.max(own_high));
-            let triangle = &triangles[*number as usize];
             let corners = triangle.corners.map(|corner| triangle.plane.nearness_at(corner));
             let largest = corners[0].max(corners[1]).max(corners[2]);
             // Inside, rounding may make it a little nearer than at the corners.
@@ -85,12 +82,12 @@ impl<'a> Tree<'a> {
         self.nodes.push(Node { low, high, nearest, from: start, to: end, second: 0 });
         if to - from > LEAF {
             let size = high - low;
-            let middle = |number: &u32| {
-                let (low, high) = boxed(number);
+            let middle = |(_, triangle): &(u32, RasterTriangle)| {
+                let (low, high) = bounds(triangle);
                 if size.x > size.y { low.x + high.x } else { low.y + high.y }
             };
             let half = (to - from) / 2;
-            self.numbers[from..to]
+            self.triangles[from..to]
                 .select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
             self.build(from, from + half);
             self.nodes[own].second = self.build(from + half, to);
@@ -116,16 +113,15 @@ impl<'a> Tree<'a> {
                 waiting.extend([halves[1 - first], halves[first]]);
                 continue;
             }
-            for &number in &self.numbers[node.from as usize..node.to as usize] {
-                let triangle = &self.triangles[number as usize];
+            for (number, triangle) in &self.triangles[node.from as usize..node.to as usize] {
                 if !covers(triangle, column, row) {
                     continue;
                 }
                 let depth = triangle.plane.at(column, row);
                 let is_nearer = best
-                    .is_none_or(|(kept, other)| depth > kept || depth == kept && number < other);
+                    .is_none_or(|(kept, other)| depth > kept || depth == kept && *number < other);
                 if is_nearer {
-                    best = Some((depth, number));
+                    best = Some((depth, *number));
                 }
             }
         }

@@ -16,24 +16,24 @@ use super::raster::{Raster, Strip, columns};
 /// Fills the `items` of a strip. O(triangles log triangles + pixels they cover).
 pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
     let width = raster.width();
-    let all = raster.triangles();
     let mut waiting: Vec<(u32, u32)> = strip
         .triangles
         .iter()
-        .map(|&number| (all[number as usize].rows(&strip.rows).start, number))
+        .map(|&number| (raster.triangle(number).rows(&strip.rows).start, number))
         .collect();
     waiting.sort_unstable_by_key(|&entry| std::cmp::Reverse(entry));
     let mut active = Vec::new();
     let mut depths = vec![Depth::default(); width as usize];
     for (row, items) in strip.rows.clone().zip(items.chunks_exact_mut(width as usize)) {
-        active.retain(|(_, _, end)| *end > row);
+        active.retain(|(_, _, _, end)| *end > row);
         while let Some((_, number)) = waiting.pop_if(|(first, _)| *first <= row) {
-            let triangle = &all[number as usize];
-            active.push((number, triangle.edges(), triangle.rows(&strip.rows).end));
+            let triangle = raster.triangle(number);
+            let end = triangle.rows(&strip.rows).end;
+            active.push((number, triangle.edges(), triangle.plane, end));
         }
         depths.fill(Depth::default());
-        for (number, edges, _) in &active {
-            let depth = all[*number as usize].plane.row(row);
+        for (number, edges, plane, _) in &active {
+            let depth = plane.row(row);
             for column in columns(edges, row, width) {
                 let at = column as usize;
                 let depth = depth.at(column);

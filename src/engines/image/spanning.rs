@@ -41,7 +41,7 @@ pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
                 }
                 None => inside.push(Inside {
                     number: edge.triangle,
-                    depth: raster.triangles()[edge.triangle as usize].plane.row(row),
+                    depth: raster.triangle(edge.triangle).plane.row(row),
                 }),
             }
         }

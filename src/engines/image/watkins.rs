@@ -37,7 +37,7 @@ pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
                     in_front.remove(at);
                 }
                 None => {
-                    let depth = raster.triangles()[edge.triangle as usize].plane.row(row);
+                    let depth = raster.triangle(edge.triangle).plane.row(row);
                     in_front.push(Entry { number: edge.triangle, depth });
                 }
             }

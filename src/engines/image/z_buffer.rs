@@ -18,7 +18,7 @@ pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
     let width = raster.width();
     let mut depths = vec![Depth::default(); items.len()];
     for &number in strip.triangles {
-        let triangle = &raster.triangles()[number as usize];
+        let triangle = raster.triangle(number);
         let edges = triangle.edges();
         for row in triangle.rows(&strip.rows) {
             let columns = columns(&edges, row, width);

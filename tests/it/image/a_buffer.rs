@@ -4,7 +4,6 @@ use super::{built, fitted};
 use crate::scenes::{number_of_scenes, random};
 use glam::DVec3;
 use hiddenline::engines::image::a_buffer::{SIDE, Share, solve as resolve};
-use hiddenline::engines::image::raster::triangle_in_pixels;
 use hiddenline::engines::image::{Engine, NOTHING, Raster, solve};
 use std::collections::BTreeMap;
 
@@ -22,8 +21,8 @@ fn opaque_shares_are_those_of_sixteen_samples() {
     let mut partly = 0;
     for seed in 0..number_of_scenes(150) {
         let (scene, camera) = built(&random(seed));
-        let (_, raster) = fitted(&scene, &camera, (31, 23));
-        let fine = raster.finer(SIDE);
+        let (map, _) = fitted(&scene, &camera, (31, 23));
+        let fine = Raster::new(&scene, &camera, &map.finer(SIDE), (31 * SIDE, 23 * SIDE));
         let samples = solve(&fine, Engine::ZBuffer);
         let pixels = shares(&fine, 1.0);
         assert_eq!(pixels.len(), 31 * 23);
@@ -52,14 +51,18 @@ fn opaque_shares_are_those_of_sixteen_samples() {
 
 /// Squares that cover the picture, one behind the other, of two triangles each.
 fn layers(n: u32, tilt: f64) -> Raster {
-    let size = (8, 8);
-    let triangles = (0..n).flat_map(|k| {
-        let near = 10.0 - f64::from(k);
-        let corner = |x: f64, y: f64| DVec3::new(x, y, near + tilt * x);
-        let [a, b, c, d] = [corner(0.0, 0.0), corner(8.0, 0.0), corner(8.0, 8.0), corner(0.0, 8.0)];
-        [triangle_in_pixels([a, b, c], 2 * k), triangle_in_pixels([a, c, d], 2 * k + 1)]
-    });
-    Raster::of_triangles(triangles.collect(), size).finer(SIDE)
+    // Two by two pixels of four by four samples.
+    let size = (2 * SIDE, 2 * SIDE);
+    let triangles: Vec<_> = (0..n)
+        .flat_map(|k| {
+            let near = 10.0 - f64::from(k);
+            let corner = |x: f64, y: f64| DVec3::new(x, y, near + tilt * x);
+            let [a, b, c, d] =
+                [corner(0.0, 0.0), corner(8.0, 0.0), corner(8.0, 8.0), corner(0.0, 8.0)];
+            [([a, b, c], 2 * k), ([a, c, d], 2 * k + 1)]
+        })
+        .collect();
+    Raster::of_triangles(&triangles, size)
 }
 
 #[test]
@@ -86,13 +89,13 @@ fn crossing_layers_change_places_where_they_cross() {
     let square = |slope: f64, number| {
         let at = |x: f64, y: f64| DVec3::new(x, y, 10.0 + slope * (x - 2.0));
         [
-            triangle_in_pixels([at(0.0, 0.0), at(4.0, 0.0), at(4.0, 4.0)], number),
-            triangle_in_pixels([at(0.0, 0.0), at(4.0, 4.0), at(0.0, 4.0)], number),
+            ([at(0.0, 0.0), at(4.0, 0.0), at(4.0, 4.0)], number),
+            ([at(0.0, 0.0), at(4.0, 4.0), at(0.0, 4.0)], number),
         ]
     };
     let triangles = [square(1.0, 0), square(-1.0, 1)].concat();
     // They cross in the middle of the only pixel.
-    let fine = Raster::of_triangles(triangles, (4, 4));
+    let fine = Raster::of_triangles(&triangles, (4, 4));
     let pixel = &shares(&fine, 0.5)[0];
     let found: f64 = pixel.iter().filter(|s| s.triangle < 2).map(|s| s.weight).sum();
     // In each half one of them is in front: ½ · ½ + ½ · ¼.

@@ -21,8 +21,7 @@ fn ties(name: &str, scene: &Scene, raster: &Raster) -> usize {
             }
             let (column, row) = (at % raster.width(), at / raster.width());
             assert!(a != NOTHING && b != NOTHING, "{name}, {engine:?}: {column}, {row}");
-            let nearness =
-                [a, b].map(|item| raster.triangles()[item as usize].plane.nearness(column, row));
+            let nearness = [a, b].map(|item| raster.triangle(item).plane.nearness(column, row));
             let difference = (nearness[0] - nearness[1]).abs() / nearness[0].abs();
             assert!(difference <= 1e-9, "{name}, {engine:?}: {column}, {row}: {nearness:?}");
             ties += 1;

@@ -31,8 +31,7 @@ fn built(scene: &TestScene) -> (Scene, Camera) {
 
 /// The face that an item is part of.
 fn face(scene: &Scene, raster: &Raster, item: u32) -> Option<u32> {
-    (item != NOTHING)
-        .then(|| scene.triangle_faces()[raster.triangles()[item as usize].triangle as usize])
+    (item != NOTHING).then(|| scene.triangle_faces()[raster.number(item) as usize])
 }
 
 /// A model, unless the folder of models is missing.

@@ -4,7 +4,6 @@
 //! y = x they are equally near, and the triangle, being the first, is seen.
 
 use glam::DVec3;
-use hiddenline::engines::image::raster::triangle_in_pixels;
 use hiddenline::engines::image::{Engine, NOTHING, Raster, solve};
 
 const A: [[f64; 3]; 3] = [[18.5, 12.5, 0.0], [22.5, 16.5, 0.0], [14.5, 22.5, 14.0]];
@@ -17,12 +16,9 @@ fn picture(mirrored: bool) -> Raster {
         let x = if mirrored { 25.5 - x } else { x - 9.5 };
         DVec3::new(x, y - 9.5, 100.0 - z)
     };
-    let triangles = vec![
-        triangle_in_pixels(A.map(place), 0),
-        triangle_in_pixels([B[0], B[1], B[2]].map(place), 1),
-        triangle_in_pixels([B[0], B[2], B[3]].map(place), 2),
-    ];
-    Raster::of_triangles(triangles, (16, 16))
+    let triangles =
+        [(A.map(place), 0), ([B[0], B[1], B[2]].map(place), 1), ([B[0], B[2], B[3]].map(place), 2)];
+    Raster::of_triangles(&triangles, (16, 16))
 }
 
 /// What a center shows: 'A', 'B' or ' '.
