@@ -14,6 +14,8 @@ use hiddenline::chain::{ChainOptions, chain};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::HiddenLines;
 use hiddenline::engines::edge::{Engine, Settings, solve};
+use hiddenline::engines::image::raster::Corners;
+use hiddenline::engines::image::{self, PixelMap, Raster};
 use hiddenline::mesh::Mesh;
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::read::{ModelFormat, read_bytes};
@@ -123,6 +125,18 @@ fn f_strokes_of_all_edges(bencher: Bencher, n: u32) {
     let view = view(&scene, LineSelection::all_edges());
     let (visibility, ..) = solve(&view, Engine::default(), &settings());
     bencher.bench_local(|| chain(black_box(&view), &visibility, None, &chaining()));
+}
+
+#[divan::bench(args = SIZES)]
+fn h_z_buffer_of_2000_x_2000_pixels(bencher: Bencher, n: u32) {
+    const SIZE: (u32, u32) = (2000, 2000);
+    let scene = Scene::new(read(&bumpy_sphere(n)));
+    let bounds = Corners::new(&scene, &camera()).bounds().expect("something to see");
+    let map = PixelMap::fitting(bounds, SIZE, 80.0);
+    bencher.bench_local(|| {
+        let raster = Raster::new(black_box(&scene), &camera(), &map, SIZE);
+        image::solve(&raster, image::Engine::ZBuffer)
+    });
 }
 
 #[divan::bench(args = SIZES)]

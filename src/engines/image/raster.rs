@@ -102,10 +102,13 @@ impl RasterTriangle {
 /// The columns of a row between the edges of a triangle.
 #[inline]
 pub fn columns(edges: &[Option<PixelEdge>; 3], row: u32, width: u32) -> Range<u32> {
-    let met = edges.iter().flatten().filter(|edge| edge.meets(row));
-    let (from, to) = met
-        .map(|edge| edge.column(row, width))
-        .fold((width, 0), |(from, to), column| (from.min(column), to.max(column)));
+    let (mut from, mut to) = (width, 0);
+    for edge in edges.iter().flatten() {
+        if edge.meets(row) {
+            let column = edge.column(row, width);
+            (from, to) = (from.min(column), to.max(column));
+        }
+    }
     from..to.max(from)
 }
 

@@ -16,7 +16,7 @@ use hiddenline::mesh::Mesh;
 use hiddenline::read::read_file;
 use hiddenline::scene::Scene;
 use hiddenline::view::Camera;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The scene, as large as fits into a picture.
 fn fitted(scene: &Scene, camera: &Camera, size: (u32, u32)) -> (PixelMap, Raster) {
@@ -42,4 +42,18 @@ fn model(name: &str) -> Option<Mesh> {
         return None;
     }
     Some(read_file(&folder.join(name), None).unwrap().mesh)
+}
+
+/// All models by name; none when their folder is missing.
+fn models() -> Vec<(String, Mesh)> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models"));
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        eprintln!("no models in {}: skipped", folder.display());
+        return Vec::new();
+    };
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "obj" || e == "stl"));
+    paths.sort();
+    let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
+    paths.iter().map(|path| (name(path), read_file(path, None).unwrap().mesh)).collect()
 }

@@ -6,24 +6,38 @@ use glam::DVec2;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::image::{Engine, solve};
-use hiddenline::framing::Framing;
+use hiddenline::framing::{Framing, Standpoint};
 use hiddenline::scene::Scene;
 use hiddenline::stats::Stats;
+use hiddenline::view::Camera;
 
 #[test]
 fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {
-    let Some(mesh) = model("platonic_shelf_ngons.obj") else { return };
-    let scene = Scene::new(mesh);
-    let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
+    for name in ["platonic_shelf_ngons.obj", "openscad_example016.stl", "cad_angle_block_open.stl"]
+    {
+        let Some(mesh) = model(name) else { return };
+        let scene = Scene::new(mesh);
+        let from_below =
+            Standpoint::Angles { azimuth_deg: 205.0, elevation_deg: -31.0, distance: None };
+        for framing in
+            [Framing::default(), Framing { standpoint: from_below, ..Framing::default() }]
+        {
+            let camera = framing.camera(scene.mesh().bounds().unwrap()).unwrap();
+            check(name, &scene, &camera);
+        }
+    }
+}
+
+fn check(name: &str, scene: &Scene, camera: &Camera) {
     let size = (1600, 1200);
-    let (map, raster) = fitted(&scene, &camera, size);
+    let (map, raster) = fitted(scene, camera, size);
     let items = solve(&raster, Engine::ZBuffer);
-    let faces: Vec<Option<u32>> = items.iter().map(|&item| face(&scene, &raster, item)).collect();
+    let faces: Vec<Option<u32>> = items.iter().map(|&item| face(scene, &raster, item)).collect();
     let at = |column: i64, row: i64| faces[(row * i64::from(size.0) + column) as usize];
 
     let options =
         DrawOptions { lines: LineSelection::all_edges(), exact: true, ..DrawOptions::default() };
-    let drawing = draw(&scene, &camera, &options, |_| 1.0, &mut Stats::default());
+    let drawing = draw(scene, camera, &options, |_| 1.0, &mut Stats::default());
     let mut is_near_stroke = vec![false; faces.len()];
     let (mut n_points, mut n_strokes) = (0, 0);
     for stroke in drawing.iter().filter(|stroke| stroke.qi == 0) {
@@ -42,21 +56,24 @@ fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {
                 }
                 assert!(
                     seen.iter().any(|face| *face != seen[0]),
-                    "a stroke at {point} where all pixels show {:?}",
+                    "{name}: a stroke at {point} where all pixels show {:?}",
                     seen[0]
                 );
                 n_points += 1;
             }
         }
     }
-    assert!(n_strokes > 50 && n_points > 1000, "{n_strokes} strokes, {n_points} points");
+    assert!(n_strokes > 50 && n_points > 1000, "{name}: {n_strokes} strokes, {n_points} points");
 
     for row in 0..i64::from(size.1) {
         for column in 1..i64::from(size.0) {
             let pair = [at(column - 1, row), at(column, row)];
             if pair[0].is_none() != pair[1].is_none() {
                 let place = (row * i64::from(size.0) + column) as usize;
-                assert!(is_near_stroke[place], "no stroke where {column}, {row} meets nothing");
+                assert!(
+                    is_near_stroke[place],
+                    "{name}: no stroke where {column}, {row} meets nothing"
+                );
             }
         }
     }
