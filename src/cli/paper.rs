@@ -66,7 +66,7 @@ impl Run<'_> {
         }
         self.stats.seconds = seconds;
         if is_json {
-            return self.write(&page.paper.description(), placed.plot, None, |out| {
+            return self.write(&page.paper.description(), &placed.plot, None, |out| {
                 Ok(json::write(drawing, camera, page.page_from_image, out)?)
             });
         }
@@ -94,31 +94,31 @@ impl Run<'_> {
             }
             _ => None,
         };
-        let written = plot.clone();
-        self.write(paper, plot, Some(done), |out| match (output.format, &output.target.device) {
+        let written = &plot;
+        self.write(paper, written, Some(done), |out| match (output.format, &output.target.device) {
             (Format::Hpgl, _) => match &profile {
-                Some(profile) => Ok(hpgl::write(&written, profile, out)?),
+                Some(profile) => Ok(hpgl::write(written, profile, out)?),
                 None => Ok(()),
             },
-            (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(&written, profile, out)?),
-            (Format::Pdf, _) => Ok(pdf::write(&written, out)?),
-            (Format::Dxf, _) => Ok(dxf::write(&written, out)?),
-            (Format::Png, _) => png::write_marked(&written, output.resolution, output.marks, out),
-            _ => Ok(svg::write(&written, output.svg_element, out)?),
+            (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(written, profile, out)?),
+            (Format::Pdf, _) => Ok(pdf::write(written, out)?),
+            (Format::Dxf, _) => Ok(dxf::write(written, out)?),
+            (Format::Png, _) => png::write_marked(written, output.resolution, output.marks, out),
+            _ => Ok(svg::write(written, output.svg_element, out)?),
         })
     }
 
     fn write(
         mut self,
         paper: &str,
-        plot: Plot,
+        plot: &Plot,
         done: Option<Done>,
         write: impl FnOnce(&mut dyn Write) -> Result<(), PngError>,
     ) -> Result<(), Box<dyn Error>> {
         if plot.layers.iter().all(|layer| layer.lines.is_empty()) {
             self.notes.warnings.push("the drawing is empty: nothing is in view".into());
         }
-        self.notes.warnings.extend(alike_pens(&plot));
+        self.notes.warnings.extend(alike_pens(plot));
         if self.output.strict && !self.notes.warnings.is_empty() {
             drop(self.progress);
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
@@ -144,7 +144,7 @@ impl Run<'_> {
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
             messages::plain(&self.notes.summary);
             let name = output.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
-            messages::plain(format_args!("{name}  {paper}{}", described(&plot, done.as_ref())));
+            messages::plain(format_args!("{name}  {paper}{}", described(plot, done.as_ref())));
             if output.verbose {
                 tell_more(output, stats, done.as_ref());
             }

@@ -30,8 +30,9 @@ pub(super) struct PlotArgs {
     ///
     /// Strokes of one pen are joined into the fewest that there can be, ink that lies on other ink
     /// is drawn once, and then they are ordered. All but seconds give the same result each time.
-    #[arg(long, value_name = "EFFORT", value_parser = values::effort, default_value = "fast")]
-    optimize: Effort,
+    /// By default fast; large function surfaces are drawn line by line, in a short way already.
+    #[arg(long, value_name = "EFFORT", value_parser = values::effort)]
+    optimize: Option<Effort>,
     /// Leave out points that are no farther than this from the line; joints are kept
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     simplify: f64,
@@ -69,7 +70,9 @@ pub(super) struct PlotArgs {
 
 /// What is to be done with the strokes.
 pub(super) struct Plotting {
-    /// `None` leaves them as they are.
+    /// Whether they are to be left as they are.
+    exact: bool,
+    /// How long to search for a short way; `None` for what is usual.
     effort: Option<Effort>,
     simplify_mm: f64,
     join_tolerance_mm: Option<f64>,
@@ -99,7 +102,8 @@ impl PlotArgs {
             }
         }
         Ok(Plotting {
-            effort: (!exact).then_some(self.optimize),
+            exact,
+            effort: self.optimize,
             simplify_mm: self.simplify,
             join_tolerance_mm: self.join_tolerance,
             overlap_mm: self.overlap_tolerance,
@@ -160,7 +164,7 @@ impl Plotting {
         rules
     }
 
-    /// Whether strokes are joined and ordered.
+    /// How long to search for a short way, if that was said.
     pub(super) fn effort(&self) -> Option<Effort> {
         self.effort
     }
@@ -185,21 +189,21 @@ impl Plotting {
     /// Joins, simplifies, orders and splits; `usual` is what holds unless it was set otherwise.
     pub(super) fn finish(&self, plot: Plot, target: &Target, usual: &Options) -> Finished {
         let work = |plot: &Plot| -> PenWork { estimate::estimate(plot, &target.motion).work() };
-        let before = work(&plot);
-        let (mut plot, n_changes) = match self.effort {
-            None => (plot, 0),
-            Some(effort) => {
-                let options = Options {
-                    join_tolerance_mm: self.join_tolerance_mm.or(usual.join_tolerance_mm),
-                    overlap_mm: self.overlap_mm.unwrap_or(usual.overlap_mm),
-                    simplify_mm: self.simplify_mm,
-                    effort,
-                    ..*usual
-                };
-                optimize(&plot, &options)
-            }
+        let options = Options {
+            join_tolerance_mm: self.join_tolerance_mm.or(usual.join_tolerance_mm),
+            overlap_mm: self.overlap_mm.unwrap_or(usual.overlap_mm),
+            simplify_mm: self.simplify_mm,
+            effort: self.effort.unwrap_or(usual.effort),
+            ..*usual
         };
-        let after = if self.effort.is_some() { work(&plot) } else { before };
+        let before = work(&plot);
+        let (mut plot, after, n_changes) = if self.exact || options.is_idle() {
+            (plot, before, 0)
+        } else {
+            let (plot, n_changes) = optimize(&plot, &options);
+            let after = work(&plot);
+            (plot, after, n_changes)
+        };
         if let Some(distance_mm) = self.split_distance_mm {
             plot = split_by_distance(&plot, distance_mm);
         }

@@ -16,6 +16,7 @@
 //! Strokes begin and end at rest, and so does every move with the pen up.
 
 use glam::DVec2;
+use rayon::prelude::*;
 use serde::Deserialize;
 
 use crate::plot::{Plot, Polylines};
@@ -145,8 +146,16 @@ pub fn estimate_lines(lines: &Polylines, motion: &Motion) -> Estimate {
 }
 
 fn add_lines(sum: &mut Estimate, last: &mut Option<DVec2>, lines: &Polylines, motion: &Motion) {
-    let mut speeds = Vec::new();
-    for line in lines.iter() {
+    let lines: Vec<&[DVec2]> = lines.iter().collect();
+    // The pen rests between strokes, so each can be estimated for itself; sums are in order.
+    let down: Vec<(f64, f64)> = lines
+        .par_iter()
+        .map_init(Ways::default, |ways, line| {
+            let (way, seconds) = ways.follow(line, motion);
+            (way, motion.lower + seconds + motion.raise)
+        })
+        .collect();
+    for (line, (way, seconds)) in lines.iter().zip(down) {
         let (Some(&first), Some(&end)) = (line.first(), line.last()) else {
             continue;
         };
@@ -157,49 +166,62 @@ fn add_lines(sum: &mut Estimate, last: &mut Option<DVec2>, lines: &Polylines, mo
         }
         sum.strokes += 1;
         sum.lifts += 1;
-        sum.down_mm += line.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
-        sum.seconds += motion.lower + stroke_seconds(line, motion, &mut speeds) + motion.raise;
+        sum.down_mm += way;
+        sum.seconds += seconds;
     }
 }
 
-/// Seconds to draw a stroke from rest to rest. `speeds` is scratch space.
-fn stroke_seconds(line: &[DVec2], motion: &Motion, speeds: &mut Vec<f64>) -> f64 {
-    let acceleration = motion.down_acceleration;
-    speeds.clear();
-    speeds.push(0.0);
-    speeds.extend(line.windows(3).map(|p| corner_speed(p[1] - p[0], p[2] - p[1], motion)));
-    speeds.push(0.0);
-    // Reachable from the point before, and such that the next can be reached.
-    for i in 1..line.len() {
-        let reach =
-            (speeds[i - 1].powi(2) + 2.0 * acceleration * line[i].distance(line[i - 1])).sqrt();
-        speeds[i] = speeds[i].min(reach);
-    }
-    for i in (1..line.len()).rev() {
-        let reach = (speeds[i].powi(2) + 2.0 * acceleration * line[i].distance(line[i - 1])).sqrt();
-        speeds[i - 1] = speeds[i - 1].min(reach);
-    }
-    line.windows(2)
-        .zip(speeds.windows(2))
-        .map(|(p, v)| {
-            ramp_seconds(p[0].distance(p[1]), v[0], v[1], motion.down_speed, acceleration)
-        })
-        .sum()
+/// The ways of a stroke, and the speeds at its points. Kept from stroke to stroke as scratch space.
+#[derive(Default)]
+struct Ways {
+    lengths: Vec<f64>,
+    /// Squares of speeds, since those grow evenly along a way.
+    squares: Vec<f64>,
 }
 
-/// Speed at which the pen may pass from one segment to the next.
-fn corner_speed(before: DVec2, after: DVec2, motion: &Motion) -> f64 {
-    let (b, a) = (before.normalize_or_zero(), after.normalize_or_zero());
-    if b == DVec2::ZERO || a == DVec2::ZERO {
-        return motion.down_speed;
+impl Ways {
+    /// How long a stroke is, and the seconds to draw it from rest to rest.
+    fn follow(&mut self, line: &[DVec2], motion: &Motion) -> (f64, f64) {
+        let Self { lengths, squares } = self;
+        let gain = 2.0 * motion.down_acceleration;
+        lengths.clear();
+        lengths.extend(line.windows(2).map(|p| p[0].distance(p[1])));
+        squares.clear();
+        squares.push(0.0);
+        squares.extend(line.windows(3).zip(lengths.windows(2)).map(|(p, length)| {
+            let across = length[0] * length[1];
+            let cosine = (p[1] - p[0]).dot(p[2] - p[1]) / across;
+            corner_speed_squared(if across > 0.0 { cosine } else { 1.0 }, motion)
+        }));
+        squares.push(0.0);
+        // Reachable from the point before, and such that the next can be reached.
+        for (i, length) in lengths.iter().enumerate() {
+            squares[i + 1] = squares[i + 1].min(squares[i] + gain * length);
+        }
+        for (i, length) in lengths.iter().enumerate().rev() {
+            squares[i] = squares[i].min(squares[i + 1] + gain * length);
+        }
+        let mut from = 0.0;
+        let mut seconds = 0.0;
+        for (length, square) in lengths.iter().zip(&squares[1..]) {
+            let to = square.sqrt();
+            let limit = motion.down_speed;
+            seconds += ramp_seconds(*length, from, to, limit, motion.down_acceleration);
+            from = to;
+        }
+        (lengths.iter().sum(), seconds)
     }
-    let sine = ((1.0 + b.dot(a)).max(0.0) / 2.0).sqrt();
-    let speed = if sine < 1.0 {
-        (motion.down_acceleration * motion.corner * sine / (1.0 - sine)).sqrt()
+}
+
+/// Square of the speed at which the pen may pass a corner; 1 is straight on.
+fn corner_speed_squared(cosine: f64, motion: &Motion) -> f64 {
+    let limit = motion.down_speed * motion.down_speed;
+    let sine = ((1.0 + cosine).max(0.0) / 2.0).sqrt();
+    if sine < 1.0 {
+        (motion.down_acceleration * motion.corner * sine / (1.0 - sine)).min(limit)
     } else {
-        motion.down_speed
-    };
-    speed.min(motion.down_speed)
+        limit
+    }
 }
 
 /// Seconds for a way between two speeds, up to the limit and down again if it is long enough.

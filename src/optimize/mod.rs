@@ -12,6 +12,7 @@
 use std::time::Duration;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::plot::{Layer, Plot, Polylines};
 
@@ -106,6 +107,14 @@ impl Options {
     pub fn for_drawings() -> Self {
         Self { join_tolerance_mm: Some(0.0), overlap_mm: OVERLAP_MM, ..Self::default() }
     }
+
+    /// Whether strokes stay as they are, but for points on straight lines.
+    pub fn is_idle(&self) -> bool {
+        self.join_tolerance_mm.is_none()
+            && self.effort == Effort::None
+            && self.simplify_mm == 0.0
+            && self.shortest_mm == 0.0
+    }
 }
 
 impl Default for Options {
@@ -177,24 +186,29 @@ fn simplified(
     strokes: impl Iterator<Item = (Vec<DVec2>, Option<Vec<bool>>)>,
     options: &Options,
 ) -> Polylines {
+    let strokes: Vec<_> = strokes.collect();
+    let lines: Vec<Vec<DVec2>> = strokes
+        .into_par_iter()
+        .map(|(points, joints)| {
+            let is_joint = |i: usize| joints.as_ref().is_some_and(|joints| joints[i]);
+            let mut line = simplify::simplify(&points, is_joint, options.simplify_mm);
+            if options.shortest_mm > 0.0 {
+                let length: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+                if length < options.shortest_mm {
+                    return Vec::new();
+                }
+                if let (Some(&first), Some(&last)) = (line.first(), line.last())
+                    && line.len() > 2
+                    && first != last
+                    && first.distance(last) < options.shortest_mm
+                {
+                    line.push(first);
+                }
+            }
+            line
+        })
+        .collect();
     let mut result = Polylines::default();
-    for (points, joints) in strokes {
-        let is_joint = |i: usize| joints.as_ref().is_some_and(|joints| joints[i]);
-        let mut line = simplify::simplify(&points, is_joint, options.simplify_mm);
-        if options.shortest_mm > 0.0 {
-            let length: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-            if length < options.shortest_mm {
-                continue;
-            }
-            if let (Some(&first), Some(&last)) = (line.first(), line.last())
-                && line.len() > 2
-                && first != last
-                && first.distance(last) < options.shortest_mm
-            {
-                line.push(first);
-            }
-        }
-        result.push(line);
-    }
+    lines.into_iter().for_each(|line| result.push(line));
     result
 }

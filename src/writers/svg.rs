@@ -9,6 +9,7 @@
 use std::io;
 
 use glam::DVec2;
+use rayon::prelude::*;
 use svg::Document;
 use svg::node::element::{Element, Group, Title};
 use svg::node::{Blob, Node, Text};
@@ -85,52 +86,88 @@ fn group(layer: &Layer, element: StrokeElement) -> Group {
     group
 }
 
+/// Points of strokes that are written at once: enough that sharing the work costs nothing.
+const POINTS_AT_ONCE: usize = 1 << 14;
+
 /// All strokes of a layer, one a line.
 fn strokes(layer: &Layer, element: StrokeElement) -> String {
+    let lines: Vec<&[DVec2]> = layer.lines.iter().collect();
+    let mut n_points = 0;
+    let mut batch = |line: &&[DVec2]| {
+        n_points += line.len();
+        n_points / POINTS_AT_ONCE
+    };
+    let numbers: Vec<usize> = lines.iter().map(&mut batch).collect();
+    let mut batches = Vec::new();
+    let mut rest = &lines[..];
+    for of_batch in numbers.chunk_by(|a, b| a == b) {
+        let (batch, others) = rest.split_at(of_batch.len());
+        batches.push(batch);
+        rest = others;
+    }
+    let texts: Vec<String> = batches.into_par_iter().map(|lines| text_of(lines, element)).collect();
+    let mut text = String::with_capacity(texts.iter().map(|text| text.len() + 1).sum());
+    for strokes in texts.iter().filter(|text| !text.is_empty()) {
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        text.push_str(strokes);
+    }
+    text
+}
+
+fn text_of(lines: &[&[DVec2]], element: StrokeElement) -> String {
     // A point takes about 16 characters, an element about 16 more.
-    let mut text = String::with_capacity(16 * (layer.lines.n_points() + layer.lines.len()));
+    let n_points: usize = lines.iter().map(|line| line.len() + 1).sum();
+    let mut text = Vec::with_capacity(16 * n_points);
     let mut points: Vec<[i64; 2]> = Vec::new();
-    for line in layer.lines.iter() {
+    for line in lines {
         points.clear();
         points.extend(line.iter().map(|&p| micrometres(p)));
         points.dedup();
         if points.len() < 2 {
             continue;
         }
-        let line_break = if text.is_empty() { "" } else { "\n" };
-        text.push_str(line_break);
+        if !text.is_empty() {
+            text.push(b'\n');
+        }
         match element {
             StrokeElement::Path => push_path(&mut text, &points),
             StrokeElement::Polyline => push_polyline(&mut text, &points),
         }
     }
-    text
+    ascii(text)
 }
 
-fn push_path(text: &mut String, points: &[[i64; 2]]) {
+/// Text of what was pushed, all of it ASCII.
+fn ascii(text: Vec<u8>) -> String {
+    String::from_utf8(text).unwrap_or_default()
+}
+
+fn push_path(text: &mut Vec<u8>, points: &[[i64; 2]]) {
     // There and back again is not closed: Z would draw the way back only once more.
     let closed = points.len() > 3 && points.first() == points.last();
     let drawn = if closed { points.split_last().map_or(points, |(_, rest)| rest) } else { points };
-    text.push_str("<path d=\"");
+    text.extend(b"<path d=\"");
     for (i, point) in drawn.iter().enumerate() {
-        text.push(if i == 0 { 'M' } else { 'L' });
-        push_point(text, point, ' ');
+        text.push(if i == 0 { b'M' } else { b'L' });
+        push_point(text, point, b' ');
     }
-    text.push_str(if closed { "Z\"/>" } else { "\"/>" });
+    text.extend(if closed { &b"Z\"/>"[..] } else { b"\"/>" });
 }
 
-fn push_polyline(text: &mut String, points: &[[i64; 2]]) {
-    text.push_str("<polyline points=\"");
+fn push_polyline(text: &mut Vec<u8>, points: &[[i64; 2]]) {
+    text.extend(b"<polyline points=\"");
     for (i, point) in points.iter().enumerate() {
         if i > 0 {
-            text.push(' ');
+            text.push(b' ');
         }
-        push_point(text, point, ',');
+        push_point(text, point, b',');
     }
-    text.push_str("\"/>");
+    text.extend(b"\"/>");
 }
 
-fn push_point(text: &mut String, [x, y]: &[i64; 2], separator: char) {
+fn push_point(text: &mut Vec<u8>, [x, y]: &[i64; 2], separator: u8) {
     push_thousandths(text, *x);
     text.push(separator);
     push_thousandths(text, *y);
@@ -143,37 +180,32 @@ fn micrometres(p: DVec2) -> [i64; 2] {
 
 /// A length in millimetres with up to three decimals.
 fn millimetres(value: f64) -> String {
-    let mut text = String::new();
+    let mut text = Vec::new();
     push_thousandths(&mut text, (value * 1000.0).round() as i64);
-    text
+    ascii(text)
 }
 
 /// Appends `value / 1000` without trailing zeros.
-fn push_thousandths(text: &mut String, value: i64) {
+fn push_thousandths(text: &mut Vec<u8>, value: i64) {
     if value < 0 {
-        text.push('-');
+        text.push(b'-');
     }
-    let size = value.unsigned_abs();
-    push_integer(text, size / 1000);
-    let mut rest = size % 1000;
-    if rest > 0 {
-        text.push('.');
-        while rest > 0 {
-            text.push(digit(rest / 100));
-            rest = rest % 100 * 10;
-        }
+    let (whole, thousandths) = (value.unsigned_abs() / 1000, value.unsigned_abs() % 1000);
+    push_integer(text, whole);
+    if thousandths > 0 {
+        let digits = [100, 10, 1].map(|unit| b'0' + (thousandths / unit % 10) as u8);
+        let n_digits =
+            if thousandths % 100 == 0 { 1 } else { 2 + usize::from(thousandths % 10 > 0) };
+        text.push(b'.');
+        text.extend(&digits[..n_digits]);
     }
 }
 
-fn push_integer(text: &mut String, value: u64) {
+fn push_integer(text: &mut Vec<u8>, value: u64) {
     if value >= 10 {
         push_integer(text, value / 10);
     }
-    text.push(digit(value % 10));
-}
-
-fn digit(value: u64) -> char {
-    char::from(b'0' + (value % 10) as u8)
+    text.push(b'0' + (value % 10) as u8);
 }
 
 /// `text` without the control characters that XML cannot hold.
