@@ -15,7 +15,7 @@ use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
     GridPieces, Lines, Order, Side, SurfaceError, floating_horizon, max_min, meshed, strokes,
 };
-use hiddenline::optimize::Options;
+use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
@@ -75,14 +75,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     progress.stage("drawing");
     stats.seconds = seconds;
-    let mut drawing = match surface.only_grid(job, &camera)? {
+    let grid = surface.only_grid(job, &camera)?;
+    let mut drawing = match grid {
         Some(grid) => draw_by_grid(job, grid, &lines, &camera, &mut stats)?,
         None => draw_by_mesh(job, &surface, factor, &lines, &camera, &mut stats)?,
     };
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
     }
-    let usual = joining(&drawing, stats.engine, &camera);
+    let usual = joining(&drawing, grid.is_some(), &camera);
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
     let notes =
@@ -96,16 +97,19 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     )
 }
 
-/// What to do with the strokes. Those of a grid run along its lines already, and no line lies on
-/// another unless the surface is seen edge-on: joining many of them again would take several times
-/// as long as all the rest.
-fn joining(drawing: &Drawing, engine: &str, camera: &Camera) -> Options {
+/// What to do with the strokes. Those of a grid run along its lines already, in a short way from
+/// line to line, and no line lies on another unless the surface is seen edge-on: joining and
+/// ordering many of them again would take several times as long as all the rest.
+fn joining(drawing: &Drawing, is_by_grid: bool, camera: &Camera) -> Options {
     let usual = Options::for_drawings();
     let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
-    let is_joined =
-        matches!(engine, "max-min" | "floating-horizon") && drawing.n_points() > FEW_POINTS;
-    if is_joined && !is_edge_on { Options { join_tolerance_mm: None, ..usual } } else { usual }
+    if is_by_grid && !is_edge_on && drawing.n_points() > FEW_POINTS {
+        Options { join_tolerance_mm: None, effort: Effort::None, ..usual }
+    } else {
+        usual
+    }
 }
+
 /// The camera that the job asks for.
 fn view_of(job: &Job, surface: &Surface) -> Result<Camera, Box<dyn Error>> {
     match &job.view {

@@ -165,7 +165,9 @@ impl Grid {
 
     /// The sample with index `j · xs.len() + i`. Panics when there is none.
     pub fn point(&self, sample: u32) -> DVec3 {
-        let (j, i) = (sample as usize / self.xs.len(), sample as usize % self.xs.len());
+        // Division of short numbers is several times faster.
+        let (j, i) = (sample / self.xs.len() as u32, sample % self.xs.len() as u32);
+        let (j, i) = (j as usize, i as usize);
         DVec3::new(self.xs[i], self.ys[j], self.zs[sample as usize])
     }
 

@@ -200,6 +200,10 @@ impl Walk<'_, '_, '_> {
         if r == 0 && part.first_row == First::Beyond && !part.radial_rows {
             self.draw(near, right, part.x_edge(self.grid, c, r));
         }
+        if !self.strip.visit([near, right, left, far], (left.u, right.u)) {
+            self.strip.leave();
+            return;
+        }
         let diagonal = if self.near_to_far() { (near, far) } else { (left, right) };
         let diagonal = match self.strip.plane.order(diagonal.0, diagonal.1) {
             Ordering::Less => self.strip.segment(diagonal.0, diagonal.1),
@@ -215,6 +219,7 @@ impl Walk<'_, '_, '_> {
         if !part.radial_columns {
             self.draw(far, right, part.y_edge(self.grid, c + 1, r));
         }
+        self.strip.leave();
     }
 
     fn draw(&mut self, a: Vertex, b: Vertex, edge: u32) {

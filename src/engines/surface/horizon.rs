@@ -19,18 +19,20 @@ use super::plan_predicates::Place;
 use super::segment::{
     CROSSING_PRECISION, End, Line, Plane, Samples, Segment, UNIT, Vertex, filtered,
 };
+use super::steps::Steps;
 
 /// Where a piece begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Break {
-    u: f64,
+pub(super) struct Break {
+    pub(super) u: f64,
     /// Bound on the error of `u`.
-    error: f64,
-    kind: Kind,
+    pub(super) error: f64,
+    pub(super) kind: Kind,
 }
 
+/// What a break is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     /// The strip's border, at exactly `u`.
     Border,
     /// The u of a sample.
@@ -52,8 +54,8 @@ pub(super) enum Stop {
     Left,
     /// The segment's right end.
     Right,
-    /// Somewhere between, at this u.
-    Inside(f64),
+    /// Somewhere between.
+    Inside(Break),
     /// At the strip's border, at exactly this u.
     Border(f64),
 }
@@ -86,6 +88,7 @@ pub(super) struct Horizon {
     border: f64,
     /// 1 for the upper horizon, −1 for the lower one.
     up: f64,
+    steps: Steps,
     pub(super) work: Work,
 }
 
@@ -95,7 +98,58 @@ impl Horizon {
         let from = Break { u: from, error: 0.0, kind: Kind::Border };
         let right = vec![Piece { line: Line::EMPTY, from }];
         let up = if upper { 1.0 } else { -1.0 };
-        Self { left: Vec::new(), right, start: from.u, border: to, up, work: Work::default() }
+        let steps = Steps::new(from.u, to);
+        Self {
+            left: Vec::new(),
+            right,
+            start: from.u,
+            border: to,
+            up,
+            steps,
+            work: Work::default(),
+        }
+    }
+
+    /// Whether all of a triangle or cell surely lies strictly within the horizon: then its segments
+    /// change nothing and nothing of them is seen. `from` and `to` are the least and greatest u of
+    /// its corners.
+    #[inline]
+    pub(super) fn encloses<S: Samples, const N: usize>(
+        &mut self,
+        plane: &Plane<S>,
+        corners: [Vertex; N],
+        (from, to): (f64, f64),
+    ) -> bool {
+        self.work.comparisons += 1;
+        // Twice the error covers the rounding of the sum.
+        let heights = corners.map(|p| p.v * self.up + 2.0 * plane.v_error(p.v));
+        let highest = heights.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+        let (from, to) = (from - 2.0 * plane.du, to + 2.0 * plane.du);
+        !heights.iter().any(|height| height.is_nan()) && self.steps.are_beyond(highest, from, to)
+    }
+
+    /// What [`renew_steps`](Self::renew_steps) costs.
+    pub(super) fn n_parts(&self) -> usize {
+        self.left.len() + self.right.len() + self.steps.len()
+    }
+
+    /// Finds anew what the horizon is surely beyond.
+    pub(super) fn renew_steps(&mut self) {
+        let Self { left, right, steps, up, border, .. } = self;
+        steps.raise();
+        let pieces = left.iter().chain(right.iter().rev());
+        let begins = pieces.clone().skip(1).map(|piece| (piece.from.u, piece.from.error));
+        for (piece, (to, to_error)) in pieces.zip(begins.chain([(*border, 0.0)])) {
+            let Piece { line, from: Break { u: from, error: from_error, .. } } = *piece;
+            let height = if line.is_empty() {
+                f64::NEG_INFINITY
+            } else {
+                // Errors twice, which covers the rounding of this sum.
+                let sway = line.slope.abs() * (from_error + to_error);
+                (line.at(from) * *up).min(line.at(to) * *up) - 2.0 * (line.error + sway)
+            };
+            steps.lower(from - 2.0 * from_error, to + 2.0 * to_error, height);
+        }
     }
 
     /// Adds a segment, and reports the runs of it that lie on or beyond the horizon as it was.
@@ -146,7 +200,7 @@ impl Horizon {
                 (from, to)
             };
             let start =
-                if at_start { left_stop(s, piece.from.u) } else { Stop::Inside(piece.from.u) };
+                if at_start { left_stop(s, piece.from.u) } else { Stop::Inside(piece.from) };
             let start_break =
                 if at_start { self.left_break(s, &piece, plane.du) } else { piece.from };
             // The piece itself is on the left stack when the segment starts inside it.
@@ -171,7 +225,7 @@ impl Horizon {
                         report(begin, start);
                     }
                     let crossing = self.crossing(plane, s, &piece, at_start, next, at_end);
-                    run = Some(Stop::Inside(crossing.u));
+                    run = Some(Stop::Inside(crossing));
                     self.left.push(Piece { line: s.line, from: crossing });
                     on_segment = true;
                 }
@@ -180,7 +234,7 @@ impl Horizon {
                         self.left.push(Piece { line: s.line, from: start_break });
                     }
                     let crossing = self.crossing(plane, s, &piece, at_start, next, at_end);
-                    report(run.take().unwrap_or(start), Stop::Inside(crossing.u));
+                    report(run.take().unwrap_or(start), Stop::Inside(crossing));
                     self.left.push(Piece { line: piece.line, from: crossing });
                     on_segment = false;
                 }

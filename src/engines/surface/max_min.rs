@@ -133,9 +133,10 @@ pub fn solve_in_strips(
         .iter()
         .flat_map(|part| {
             let sight = Sight::new(camera, part.sx, part.sy, centre);
-            strips(grid, part, &sight, size, cells_per_strip)
-                .into_iter()
-                .map(move |range| (part, sight, range))
+            let n_cells = part.columns.len() * part.rows.len();
+            let n_strips = n_cells / cells_per_strip.max(1);
+            let ranges = strips(places(grid, part, &sight), n_strips, &sight, size);
+            ranges.into_iter().map(move |range| (part, sight, range))
         })
         .collect();
     let done: Vec<_> = tasks
@@ -258,23 +259,8 @@ fn sides(values: &[f64], eye: f64) -> Vec<(f64, (Vec<u32>, First))> {
     sides
 }
 
-/// Ranges of u of about equal work that make up a part.
-fn strips(
-    grid: &Grid,
-    part: &Part,
-    sight: &Sight,
-    size: DVec3,
-    cells_per_strip: usize,
-) -> Vec<(f64, f64)> {
-    let (low, high) = match sight.forward {
-        None => (-1.0, 1.0),
-        Some(f) => {
-            let reach = 2.0 * (f.x.abs() * size.y + f.y.abs() * size.x) + f64::MIN_POSITIVE;
-            (-reach, reach)
-        }
-    };
-    let cells = part.columns.len() * part.rows.len();
-    let n_strips = (cells / cells_per_strip.max(1)).clamp(1, MAX_STRIPS);
+/// Places along u of a part's samples, some of many.
+fn places(grid: &Grid, part: &Part, sight: &Sight) -> Vec<f64> {
     let every = |n: usize| (n / 64).max(1);
     let mut us: Vec<f64> = Vec::new();
     for &row in part.rows.iter().skip(1).step_by(every(part.rows.len())) {
@@ -283,10 +269,28 @@ fn strips(
             us.push(hu / hw);
         }
     }
-    us.sort_unstable_by(f64::total_cmp);
+    us
+}
+
+/// About so many ranges of u of about equal work that make up a part; `places` are where the work is.
+pub(super) fn strips(
+    mut places: Vec<f64>,
+    n_strips: usize,
+    sight: &Sight,
+    size: DVec3,
+) -> Vec<(f64, f64)> {
+    let (low, high) = match sight.forward {
+        None => (-1.0, 1.0),
+        Some(f) => {
+            let reach = 2.0 * (f.x.abs() * size.y + f.y.abs() * size.x) + f64::MIN_POSITIVE;
+            (-reach, reach)
+        }
+    };
+    let n_strips = if places.is_empty() { 1 } else { n_strips.clamp(1, MAX_STRIPS) };
+    places.sort_unstable_by(f64::total_cmp);
     let mut borders = vec![low];
     for k in 1..n_strips {
-        let u = us[k * us.len() / n_strips];
+        let u = places[k * places.len() / n_strips];
         if u > borders[borders.len() - 1] && u < high {
             borders.push(u);
         }

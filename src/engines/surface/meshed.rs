@@ -1,8 +1,10 @@
-//! Surfaces drawn by the mesh engines: with holes, of several sheets, or of any shape in space.
+//! Surfaces of triangles: by [`tin`] where that can, else by the mesh engines, which also draw what
+//! has holes, several sheets, or any shape in space.
 
+use super::tin;
 use crate::chain::{ChainOptions, chain, shortest};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
-use crate::engines::edge::{Engine, Settings, solve};
+use crate::engines::edge::{Counts, Engine, Settings, solve};
 use crate::predicates::Sign;
 use crate::stats::{Stats, timed};
 use crate::strokes::{Drawing, StrokeKind};
@@ -13,7 +15,7 @@ use crate::visibility::Visibility;
 /// How a surface is drawn by a mesh engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshedOptions {
-    /// Which mesh engine.
+    /// Which mesh engine; [`Engine::Auto`] first tries [`tin`].
     pub engine: Engine,
     /// Edges between a front and a back triangle, too. They run along sides of triangles, so a
     /// fold of a smooth surface comes out as a zigzag within one row of cells, which is as narrow
@@ -61,8 +63,18 @@ pub fn draw(
     });
     let settings =
         Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: !options.exact };
-    let (visibility, counts, engine) =
-        timed(&mut stats.seconds.visibility, || solve(&view, options.engine, &settings));
+    let mut n_exact = 0;
+    let (visibility, counts, engine) = timed(&mut stats.seconds.visibility, || {
+        let by_horizons = if options.engine == Engine::Auto { tin::solve(&view) } else { None };
+        match by_horizons {
+            Some((visibility, work)) => {
+                n_exact = work.exact;
+                let candidate_pairs = work.comparisons;
+                (visibility, Counts { candidate_pairs, ..Counts::default() }, "max-min")
+            }
+            None => solve(&view, options.engine, &settings),
+        }
+    });
     stats.engine = engine;
     stats.vertices = scene.mesh().positions().len();
     stats.faces = scene.mesh().n_faces();
@@ -70,7 +82,7 @@ pub fn draw(
     stats.edges = scene.topology().edges().len();
     stats.drawn_edges = view.drawn().len();
     stats.counts.candidate_pairs = counts.candidate_pairs;
-    stats.counts.exact_predicates = view.sight().n_exact();
+    stats.counts.exact_predicates = view.sight().n_exact() + n_exact;
     timed(&mut stats.seconds.strokes, || {
         let mut chaining = ChainOptions {
             hidden: false,

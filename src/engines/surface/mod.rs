@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | [`floating_horizon`] | grid lines | the nearer lines of the same family | samples + crossings |
 //! | [`max_min`] | both families of grid lines | the triangulated surface | samples + crossings |
+//! | [`tin`] | any edges of a triangulated surface over a convex domain | the triangulated surface | triangles + crossings |
 //! | [`meshed`] | any edges of any mesh | all triangles, by a line engine | as that engine |
 
 mod cells;
@@ -16,7 +17,9 @@ mod pen_path;
 mod pieces;
 mod plan_predicates;
 mod segment;
+mod steps;
 mod strip;
+pub mod tin;
 
 pub use horizon::Work;
 pub use lines::{Lines, strokes};

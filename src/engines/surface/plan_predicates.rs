@@ -198,14 +198,39 @@ impl Sight {
             return 0.0;
         };
         let w = cross(&cross(a, b), &cross(c, d));
-        // Keep 128 bits more of the numerator than of the denominator, then shift back.
-        let shift = 128 + w[1].clone().into_parts().1.bit_len() as isize
-            - w[0].clone().into_parts().1.bit_len() as isize;
-        let shift = shift.max(0) as usize;
-        let quotient = (w[0].clone() << shift) / w[1].clone();
         let unit = self.forward.map_or(0, |_| scaled.2);
-        let value = quotient.to_f64().value();
-        libm::ldexp(value, (unit - shift as i64).clamp(-3000, 3000) as i32)
+        libm::ldexp(ratio(&w[0], &w[1]), unit.clamp(-3000, 3000) as i32)
+    }
+
+    /// How far along the way from `p` to `q`, as a part of it, a place is passed; correct to the last
+    /// place or so.
+    pub(super) fn way_to_place(&self, [p, q]: [DVec3; 2], place: Place) -> f64 {
+        let scaled = self.scaled(&[p, q], &[place]);
+        let ([p, q], [w]) = (&scaled.0[..], &scaled.1[..]) else {
+            return 0.0;
+        };
+        let passed = |h: &Triple| &h[0] * &w[1] - &w[0] * &h[1];
+        way(&passed(p), &passed(q))
+    }
+
+    /// The same for where the way leads over or under a line.
+    pub(super) fn way_to_line(&self, [p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> f64 {
+        let [p, q, a, b] = self.exact([p, q, a, b]);
+        let normal = cross(&a, &b);
+        way(&dot(&normal, &p), &dot(&normal, &q))
+    }
+
+    /// The same for the u at which two lines cross.
+    pub(super) fn way_to_crossing(
+        &self,
+        [p, q]: [DVec3; 2],
+        [a, b]: [DVec3; 2],
+        [c, d]: [DVec3; 2],
+    ) -> f64 {
+        let [p, q, a, b, c, d] = self.exact([p, q, a, b, c, d]);
+        let w = cross(&cross(&a, &b), &cross(&c, &d));
+        let passed = |h: &Triple| &h[0] * &w[1] - &w[0] * &h[1];
+        way(&passed(&p), &passed(&q))
     }
 
     fn exact<const N: usize>(&self, points: [DVec3; N]) -> [Triple; N] {
@@ -260,6 +285,23 @@ impl Sight {
             }
         }
     }
+}
+
+/// Where what changes evenly from `p` to `q` is zero, as a part of the way.
+fn way(p: &IBig, q: &IBig) -> f64 {
+    ratio(p, &(p - q))
+}
+
+/// A quotient, correct to the last place or so; 0 when the divisor is.
+fn ratio(numerator: &IBig, denominator: &IBig) -> f64 {
+    if *denominator == IBig::ZERO {
+        return 0.0;
+    }
+    let n_bits = |number: &IBig| number.clone().into_parts().1.bit_len() as isize;
+    // Keep 128 bits more of the numerator than of the denominator, then shift back.
+    let shift = (128 + n_bits(denominator) - n_bits(numerator)).max(0) as usize;
+    let quotient = (numerator.clone() << shift) / denominator;
+    libm::ldexp(quotient.to_f64().value(), -(shift.min(3000) as i32))
 }
 
 /// On which side of the plane through `a`, `b` and `c` a point lies: `Greater` when `a`, `b`, `c` turn

@@ -16,6 +16,10 @@ pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
 /// ends, never on what is visible.
 pub(super) const CROSSING_PRECISION: f64 = 1e-13;
 
+/// Where pieces end on edges is found again in integers where it is not known to this part of the
+/// edge. It bears on where a stroke ends, never on what is visible.
+pub(super) const PLACE_PRECISION: f64 = 1e-10;
+
 /// Samples by number.
 pub(super) trait Samples: Sync {
     /// Where a sample stands.

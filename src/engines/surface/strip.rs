@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use glam::DVec3;
 
 use super::Work;
-use super::horizon::{Horizon, Stop};
+use super::horizon::{Break, Horizon, Kind, Stop};
 use super::pieces::{HIDDEN, LOWER, Piece, Side, UPPER};
-use super::segment::{End, Plane, Samples, Segment, Vertex};
+use super::plan_predicates::Place;
+use super::segment::{End, PLACE_PRECISION, Plane, Samples, Segment, Vertex};
 
 /// A strip of one part of the domain, from one u to another. Strips never hide each other.
 pub(super) struct Strip<'a, S: Samples> {
@@ -19,6 +20,10 @@ pub(super) struct Strip<'a, S: Samples> {
     upper: Option<Horizon>,
     /// Absent when the eye stands above the surface within the domain.
     lower: Option<Horizon>,
+    /// Whether the cell that is visited surely lies within the upper, the lower horizon.
+    is_within: [bool; 2],
+    /// Cells visited since the horizons' steps were found.
+    n_visited: usize,
     /// Edges wholly visible; each is written by the one strip that holds it.
     status: &'a [AtomicU8],
     pub(super) found: Vec<Piece>,
@@ -33,7 +38,8 @@ impl<'a, S: Samples> Strip<'a, S> {
     ) -> Self {
         let upper = upper.then(|| Horizon::new(from, to, true));
         let lower = lower.then(|| Horizon::new(from, to, false));
-        Self { plane, from, to, upper, lower, status, found: Vec::new() }
+        let is_within = [false; 2];
+        Self { plane, from, to, upper, lower, is_within, n_visited: 0, status, found: Vec::new() }
     }
 
     pub(super) fn work(&self) -> Work {
@@ -79,7 +85,14 @@ impl<'a, S: Samples> Strip<'a, S> {
             |id: u32, s: f64, at: fn(DVec3) -> f64| at(point(id)) * s < at(sight.centre) * s;
         let out = |id: u32| outside(id, sight.sx, |p| p.x) || outside(id, sight.sy, |p| p.y);
         let (a_out, b_out) = (out(a), out(b));
-        if a_out && b_out && !(outside(a, sight.sx, |p| p.x) && outside(b, sight.sy, |p| p.y)) {
+        // Both outside, it passes through the part only from beyond x, on the left, to beyond y.
+        let crosses = || {
+            outside(a, sight.sx, |p| p.x)
+                && !outside(a, sight.sy, |p| p.y)
+                && outside(b, sight.sy, |p| p.y)
+                && !outside(b, sight.sx, |p| p.x)
+        };
+        if a_out && b_out && !crosses() {
             return None;
         }
         let end = |out: bool| if out { End::Border } else { End::Vertex };
@@ -95,21 +108,53 @@ impl<'a, S: Samples> Strip<'a, S> {
         Some(segment)
     }
 
+    /// Looks where a cell lies as a whole; says whether there is anything to do with its segments,
+    /// which are compared with those horizons only that it is not surely within. `range` is that of
+    /// its corners' u.
+    #[inline]
+    pub(super) fn visit<const N: usize>(
+        &mut self,
+        corners: [Vertex; N],
+        range: (f64, f64),
+    ) -> bool {
+        self.n_visited += 1;
+        let horizons = [&self.upper, &self.lower].into_iter().flatten();
+        if self.n_visited > horizons.map(Horizon::n_parts).sum() {
+            self.n_visited = 0;
+            [&mut self.upper, &mut self.lower].into_iter().flatten().for_each(Horizon::renew_steps);
+        }
+        self.is_within = [&mut self.upper, &mut self.lower].map(|horizon| {
+            horizon.as_mut().is_none_or(|horizon| horizon.encloses(&self.plane, corners, range))
+        });
+        self.is_within != [true; 2]
+    }
+
+    /// After this, segments are compared with both horizons.
+    #[inline]
+    pub(super) fn leave(&mut self) {
+        self.is_within = [false; 2];
+    }
+
     /// Lets a segment hide what comes later.
     #[inline]
     pub(super) fn hide(&mut self, segment: &Segment) {
-        for horizon in [&mut self.upper, &mut self.lower].into_iter().flatten() {
-            horizon.add(&self.plane, segment, |_, _| {});
+        for (horizon, is_within) in
+            [&mut self.upper, &mut self.lower].into_iter().zip(self.is_within)
+        {
+            if let Some(horizon) = horizon.as_mut().filter(|_| !is_within) {
+                horizon.add(&self.plane, segment, |_, _| {});
+            }
         }
     }
 
     /// Records what is visible of a segment, which is an edge of the drawing, and lets it hide.
     #[inline]
     pub(super) fn draw(&mut self, segment: &Segment, edge: u32) {
-        let Self { plane, status, found, from, to, .. } = self;
+        let Self { plane, status, found, from, to, is_within, .. } = self;
         let mut wholly = false;
-        for (horizon, side) in [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)] {
-            let Some(horizon) = horizon else { continue };
+        let horizons = [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)];
+        for ((horizon, side), &is_within) in horizons.into_iter().zip(&*is_within) {
+            let Some(horizon) = horizon.as_mut().filter(|_| !is_within) else { continue };
             let seen_before = wholly;
             horizon.add(plane, segment, |begin, end| {
                 if seen_before {
@@ -203,7 +248,15 @@ fn place<S: Samples>(
             let centre = plane.sight.centre[k];
             return (centre - first[k]) / ((centre - first[k]) + (last[k] - centre));
         }
-        Stop::Border(u) | Stop::Inside(u) => u.clamp(from, to),
+        Stop::Inside(at) => {
+            // On an edge nearly in the vertical plane of the eye u tells little.
+            let width = segment.ub - segment.line.ua;
+            if at.error + 2.0 * plane.du > PLACE_PRECISION * width {
+                return exact_place(plane, [first, last], segment, at).clamp(0.0, 1.0);
+            }
+            at.u.clamp(from, to)
+        }
+        Stop::Border(u) => u.clamp(from, to),
     };
     let g = |p: DVec3| {
         let [hu, hw, _] = plane.sight.rounded(p);
@@ -211,4 +264,23 @@ fn place<S: Samples>(
     };
     let (at_first, at_last) = (g(first), g(last));
     (at_first / (at_first - at_last)).clamp(0.0, 1.0)
+}
+
+/// The same for a break, from the very samples.
+fn exact_place<S: Samples>(
+    plane: &Plane<S>,
+    ends: [DVec3; 2],
+    segment: &Segment,
+    at: Break,
+) -> f64 {
+    let points = |ids: [u32; 2]| ids.map(|id| plane.point(id));
+    let own = [segment.line.a, segment.line.b];
+    let sight = &plane.sight;
+    match at.kind {
+        Kind::Border => sight.way_to_place(ends, Place::Border(at.u)),
+        Kind::Vertex(id) => sight.way_to_place(ends, Place::Vertex(plane.point(id))),
+        Kind::Crossing(line, other) if other == own => sight.way_to_line(ends, points(line)),
+        Kind::Crossing(line, other) if line == own => sight.way_to_line(ends, points(other)),
+        Kind::Crossing(line, other) => sight.way_to_crossing(ends, points(line), points(other)),
+    }
 }

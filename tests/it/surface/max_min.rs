@@ -1,8 +1,10 @@
 //! Max-Min patches against brute force in integers.
 
 use glam::{DVec3, dvec3};
+use hiddenline::classify::ViewedScene;
+use hiddenline::engines::edge::{Engine, Settings, solve as engine};
 use hiddenline::engines::surface::{GridPieces, Order, Side, SurfaceError, max_min};
-use hiddenline::surface::Grid;
+use hiddenline::surface::{Grid, LatticeLines, LinedMesh};
 use hiddenline::view::{Camera, Projection};
 
 use super::brute;
@@ -248,4 +250,29 @@ fn rough_surfaces_equal_brute_force_in_orthographic_views() {
             &format!("round {round}"),
         );
     }
+}
+
+/// An eye next to the plane of a grid line, as decimal fractions have it.
+#[test]
+fn an_eye_nearly_in_the_plane_of_a_grid_line_loses_nothing_of_it() {
+    let mut xs: Vec<f64> = (0..16).map(|k| -1.5 + 0.2 * f64::from(k)).collect();
+    xs[6] = -0.30000000000000004;
+    let heights = (0..256).map(|k| f64::from(k % 16 * (k / 16) % 7) / 4.0).collect();
+    let grid = Grid::new(xs.clone(), xs, heights).expect("a grid");
+    let camera = camera(dvec3(-0.3, 5.0, 2.5), DVec3::ZERO, PERSPECTIVE);
+    let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("pieces");
+
+    let mut mesh = LinedMesh::default();
+    let all = LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: false };
+    mesh.push_grid(&grid, &all);
+    let surface = mesh.into_scene().expect("a scene");
+    let view = ViewedScene::with_edges(&surface.scene, &camera, surface.lines.clone());
+    let settings = Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let (expected, ..) = engine(&view, Engine::AllPairs, &settings);
+    let visible = |k: usize| -> f64 {
+        expected.spans(k).iter().filter(|span| span.qi == 0).map(|span| span.t1 - span.t0).sum()
+    };
+    let expected: f64 = (0..expected.len()).map(visible).sum();
+    let found: f64 = pieces.iter().map(|piece| piece.t1 - piece.t0).sum();
+    assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
 }

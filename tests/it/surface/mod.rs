@@ -6,3 +6,4 @@ mod max_min;
 mod meshed;
 mod pen_path;
 mod program;
+mod tin;

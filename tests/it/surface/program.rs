@@ -79,16 +79,36 @@ fn what_max_min_cannot_draw_goes_to_a_mesh_engine() {
         &["--grid", "heights"][..],
         &["sqrt(9 - r^2)", "--samples", "21"],
         &["x", "(-y)", "--samples", "9"],
-        &["-x^2", "--samples", "9", "--lines", "x,levels"],
-        &["x*y", "--samples", "9", "--lines", "silhouette,border"],
-        &["--parametric", "u", "v", "u*v", "--samples", "7", "--lines", "mesh"],
+        &["-x^2", "--samples", "9", "--lines", "x,levels", "--where", "abs(x) > 1"],
+        &["x", "(-y)", "--samples", "9", "--lines", "silhouette,border"],
+        &["--parametric", "cos(u)", "sin(u)", "v", "--samples", "7", "--lines", "mesh"],
     ] {
         let (strokes, engine) = drawn(&folder, arguments);
         assert!(["roberts", "appel"].contains(&engine.as_str()), "{arguments:?}: {engine}");
         assert!(!strokes.is_empty(), "{arguments:?}");
     }
-    let (strokes, _) = drawn(&folder, &["-x^2", "--samples", "9", "--lines", "x,levels"]);
-    assert_eq!(kinds(&strokes), ["grid", "level"]);
+}
+
+#[test]
+fn triangles_over_a_convex_domain_are_drawn_by_horizons() {
+    let folder = with_file("0,0,0\n2,0,1\n2,2,0\n0,2,1\n1,1,3\n");
+    for (arguments, expected) in [
+        (&["-x^2", "--samples", "9", "--lines", "x,levels"][..], &["grid", "level"][..]),
+        (&["x*y", "--samples", "9", "--lines", "border"], &["boundary"]),
+        (&["x*y", "--samples", "9", "--where", "r < 4"], &["boundary", "grid"]),
+        (&["--points", "heights"], &["mesh"]),
+    ] {
+        let (strokes, engine) = drawn(&folder, arguments);
+        assert_eq!((kinds(&strokes), engine.as_str()), (expected.to_vec(), "max-min"));
+        let roberts = [arguments, &["--exact", "--engine", "roberts"]].concat();
+        let (by_mesh, _) = drawn(&folder, &roberts);
+        let (by_horizons, _) = drawn(&folder, &[arguments, &["--exact"]].concat());
+        let length = |strokes| -> f64 {
+            segments(strokes).iter().map(|s| (s[2] - s[0]).hypot(s[3] - s[1])).sum()
+        };
+        let (found, expected) = (length(&by_horizons), length(&by_mesh));
+        assert!((found - expected).abs() < 1e-9 * expected, "{arguments:?}: {found}, {expected}");
+    }
 }
 
 #[test]
@@ -106,7 +126,7 @@ fn a_sheet_hides_the_one_below() {
 fn scattered_points_are_drawn_as_triangles() {
     let folder = with_file("x,y,z\n0,0,0\n2,0,1\n2,2,0\n0,2,1\n1,1,3\n");
     let (strokes, engine) = drawn(&folder, &["--points", "heights", "--view", "top", "--exact"]);
-    assert_ne!(engine, "max-min");
+    assert_eq!(engine, "max-min");
     assert_eq!((strokes.len(), kinds(&strokes)), (8, vec!["mesh"]));
     let levels = ["--points", "heights", "--lines", "levels", "--levels", "2,"];
     let (strokes, _) = drawn(&folder, &levels);
@@ -173,8 +193,10 @@ fn axes_have_ticks_and_letters_outside_of_the_surface() {
         &folder,
         &["sin(x)*y", "--title", "A title", "--levels", "3", "--lines", "both,levels"],
     );
-    assert_eq!(kinds(&strokes), ["axis", "grid", "level", "text"]);
-    assert_ne!(engine, "max-min");
+    assert_eq!(
+        (kinds(&strokes), engine.as_str()),
+        (vec!["axis", "grid", "level", "text"], "max-min")
+    );
     let (strokes, engine) = drawn(&folder, &["sin(x)*y", "--title", "A title"]);
     assert_eq!((kinds(&strokes), engine.as_str()), (vec!["axis", "grid", "text"], "max-min"));
     let of = |kind: &str| strokes.iter().filter(|s| s["kind"] == kind).count();

@@ -1,0 +1,483 @@
+//! Max-Min patches over a triangulation: any surface z = f(x, y) made of triangles whose domain is
+//! convex, such as scattered points, a grid with level curves, or a formula over a disk.
+//!
+//! ```text
+//!       ╱╲ 3 ╱╲       triangles from the eye outwards: of two that share an edge, the one on the
+//!      ╱ 2╲ ╱ 4╲      eye's side of it comes first, in plan. Each tests its far edges, which then
+//!      ╲  ╱╲  ╱       hide; near edges were the far ones of the triangle before, except on the
+//!       ╲╱ 1╲╱        border of the domain
+//!         ●           the eye's foot
+//! ```
+//!
+//! All else is as in [`max_min`](super::max_min): parts around the eye, strips, horizons, edges in
+//! the vertical plane of the eye. That there is such an order is known for Delaunay triangulations
+//! (L. De Floriani, B. Falcidieno, G. Nagy and C. Pienovi, "On sorting triangles in a Delaunay
+//! tessellation", Algorithmica 6, 1991); it is found here for each view, and where triangles come
+//! before each other in turn, or where the domain has holes or bays through which one may look,
+//! there is no answer and a mesh engine has to draw. O(triangles + crossings).
+
+use std::cmp::Ordering;
+use std::sync::atomic::AtomicU8;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Work;
+use super::max_min::strips;
+use super::pieces::{GridPieces, HIDDEN, LOWER, PARTLY, UPPER};
+use super::plan_predicates::{Sight, over_plane};
+use super::segment::{Plane, Samples, Vertex};
+use super::strip::Strip;
+use crate::classify::ViewedScene;
+use crate::predicates::{Sign, orient2d};
+use crate::scene::Scene;
+use crate::view::{Camera, Projection};
+use crate::visibility::{Span, Visibility};
+
+/// A part is split into strips of about this many triangles.
+const TRIANGLES_PER_STRIP: usize = 60_000;
+
+/// Finds the visible parts of the drawn edges; hidden parts count as hidden once.
+///
+/// `None` when the scene is no function over a convex domain, when triangles hide each other in
+/// turn, when the eye is on the surface, or when the near plane cuts a triangle.
+pub fn solve(view: &ViewedScene) -> Option<(Visibility, Work)> {
+    solve_in_strips(view, TRIANGLES_PER_STRIP)
+}
+
+/// As [`solve`], with strips of about `triangles_per_strip` triangles; the same up to the rounding of
+/// where pieces end.
+pub fn solve_in_strips(
+    view: &ViewedScene,
+    triangles_per_strip: usize,
+) -> Option<(Visibility, Work)> {
+    let scene = view.scene();
+    if !is_function_over_convex_domain(scene) || !is_clear_of_near_plane(view) {
+        return None;
+    }
+    let camera = view.camera();
+    let n_edges = scene.topology().edges().len();
+    let forward = camera.forward();
+    let is_perspective = matches!(camera.projection(), Projection::Perspective { .. });
+    let pieces = if !is_perspective && forward.x == 0.0 && forward.y == 0.0 {
+        let seen = if forward.z < 0.0 { UPPER } else { LOWER };
+        GridPieces::join(0, 0, vec![seen; n_edges], Vec::new())
+    } else {
+        sweep(&Tin::new(scene, camera)?, triangles_per_strip)?
+    };
+    Some((visibility(view, &pieces), pieces.work))
+}
+
+/// Whether all triangles turn one way in plan, side by side, and together cover a convex region.
+fn is_function_over_convex_domain(scene: &Scene) -> bool {
+    let (triangles, topology) = (scene.triangles(), scene.topology());
+    let positions = scene.mesh().positions();
+    let turn = |a: u32, b: u32, c: u32| {
+        let [a, b, c] = [a, b, c].map(|v| positions[v as usize].truncate());
+        orient2d(a, b, c)
+    };
+    let is_one_to_one = triangles.len() == scene.mesh().n_faces();
+    let is_upward = |&[a, b, c]: &[u32; 3]| turn(a, b, c) == Sign::Positive;
+    if triangles.is_empty() || !is_one_to_one || !triangles.par_iter().all(is_upward) {
+        return false;
+    }
+    // The border, from each vertex on it to the next.
+    let mut next = vec![u32::MAX; positions.len()];
+    let mut n_border = 0;
+    let mut start = 0;
+    for (edge, &[low, high]) in (0..).zip(topology.edges()) {
+        match topology.uses(edge) {
+            [only] => {
+                let (from, to) = if only.runs_upwards() { (low, high) } else { (high, low) };
+                if std::mem::replace(&mut next[from as usize], to) != u32::MAX {
+                    return false;
+                }
+                (n_border, start) = (n_border + 1, from);
+            }
+            [one, other] if one.runs_upwards() != other.runs_upwards() => {}
+            _ => return false,
+        }
+    }
+    // One loop that always turns left and goes round once bounds a convex region; a disk whose
+    // triangles all turn one way then covers it once (Euler: a disk has characteristic 1).
+    let is_upper = |a: u32, b: u32| {
+        let (a, b) = (positions[a as usize], positions[b as usize]);
+        b.y > a.y || b.y == a.y && b.x > a.x
+    };
+    let mut at = start;
+    let mut n_rises = 0;
+    for k in 0..n_border {
+        let middle = next[at as usize];
+        let Some(&after) = next.get(middle as usize).filter(|&&v| v != u32::MAX) else {
+            return false;
+        };
+        if turn(at, middle, after) == Sign::Negative || (middle == start) != (k + 1 == n_border) {
+            return false;
+        }
+        n_rises += usize::from(!is_upper(at, middle) && is_upper(middle, after));
+        at = middle;
+    }
+    let mut is_used = vec![false; positions.len()];
+    triangles.iter().flatten().for_each(|&v| is_used[v as usize] = true);
+    let n_vertices = is_used.iter().filter(|&&is_used| is_used).count();
+    n_rises == 1 && n_vertices + triangles.len() == topology.edges().len() + 1
+}
+
+/// Whether every triangle is beyond the near plane, or wholly behind the eye, where it hides nothing.
+fn is_clear_of_near_plane(view: &ViewedScene) -> bool {
+    if !view.near_plane_cuts() {
+        return true;
+    }
+    let (camera, positions) = (view.camera(), view.scene().mesh().positions());
+    let is_kept = |v: u32| view.sight().near_distance(v).1 != Sign::Negative;
+    let is_behind = |v: u32| (positions[v as usize] - camera.eye()).dot(camera.forward()) <= 0.0;
+    let is_clear = |corners: &[u32; 3]| {
+        corners.iter().all(|&v| is_kept(v)) || corners.iter().all(|&v| is_behind(v))
+    };
+    view.scene().triangles().par_iter().all(is_clear)
+}
+
+/// How the eye stands to a side of a triangle, in plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Facing {
+    /// Beyond it: the triangle lies behind this side.
+    Near,
+    /// On the triangle's side of it.
+    Far,
+    /// On its line.
+    Radial,
+}
+
+/// A triangulated surface as one camera sees it.
+struct Tin<'a> {
+    scene: &'a Scene,
+    /// For each triangle its edges and how the eye stands to them, from its first corner on.
+    sides: Vec<[(u32, Facing); 3]>,
+    /// The triangles from the eye outwards.
+    order: Vec<u32>,
+    camera: Camera,
+    /// The eye, or a fixed point in the middle.
+    centre: DVec3,
+    /// Greatest distance of a vertex from it along each axis.
+    size: DVec3,
+    is_perspective: bool,
+}
+
+impl Samples for Tin<'_> {
+    fn point(&self, sample: u32) -> DVec3 {
+        self.scene.mesh().positions()[sample as usize]
+    }
+}
+
+impl<'a> Tin<'a> {
+    /// `None` when triangles come before each other in turn.
+    fn new(scene: &'a Scene, camera: &Camera) -> Option<Self> {
+        let is_perspective = matches!(camera.projection(), Projection::Perspective { .. });
+        let (low, high) = scene.mesh().bounds()?;
+        let centre = if is_perspective { camera.eye() } else { low + 0.5 * (high - low) };
+        let size = (high - centre).abs().max((low - centre).abs());
+        let positions = scene.mesh().positions();
+        let (sx, sy) = signs(camera);
+        let sight = Sight::new(camera, sx, sy, centre);
+        let eye = camera.eye().truncate();
+        let facing = |a: u32, b: u32| {
+            let [a, b] = [a, b].map(|v| positions[v as usize]);
+            // Triangles are to the left of their sides.
+            let left = if is_perspective {
+                orient2d(a.truncate(), b.truncate(), eye)
+            } else {
+                let order = Sign::from(sight.order(a, b));
+                if sx * sy > 0.0 { order } else { order.flipped() }
+            };
+            match left {
+                Sign::Positive => Facing::Far,
+                Sign::Zero => Facing::Radial,
+                Sign::Negative => Facing::Near,
+            }
+        };
+        let topology = scene.topology();
+        let sides: Vec<[(u32, Facing); 3]> = scene
+            .triangles()
+            .par_iter()
+            .map(|&[a, b, c]| {
+                [(a, b), (b, c), (c, a)].map(|(a, b)| {
+                    let edge = topology.find_edge(a.min(b), a.max(b)).unwrap_or_default();
+                    (edge, facing(a, b))
+                })
+            })
+            .collect();
+        let order = outwards(scene, &sides)?;
+        Some(Self { scene, sides, order, camera: *camera, centre, size, is_perspective })
+    }
+
+    /// Which horizons there are, (upper, lower), as the eye stands over the domain or beside it;
+    /// `None` with the eye on the surface.
+    fn horizons(&self) -> Option<(bool, bool)> {
+        let holds_eye = |sides: &&[(u32, Facing); 3]| {
+            self.is_perspective && sides.iter().all(|(_, facing)| *facing != Facing::Near)
+        };
+        let Some(triangle) = self.sides.iter().position(|sides| holds_eye(&sides)) else {
+            return Some((true, true));
+        };
+        let [a, b, c] = self.scene.triangles()[triangle].map(|v| self.point(v));
+        match over_plane(self.camera.eye(), a, b, c) {
+            Ordering::Greater => Some((true, false)),
+            Ordering::Less => Some((false, true)),
+            Ordering::Equal => None,
+        }
+    }
+
+    fn is_border(&self, edge: u32) -> bool {
+        self.scene.topology().uses(edge).len() == 1
+    }
+}
+
+/// The triangles such that of two with a common edge the one on the eye's side comes first; `None`
+/// when there is no such order. The last that became free comes next, so neighbors follow each other.
+fn outwards(scene: &Scene, sides: &[[(u32, Facing); 3]]) -> Option<Vec<u32>> {
+    let topology = scene.topology();
+    let neighbor = |triangle: usize, edge: u32| {
+        topology.uses(edge).iter().map(|used| used.face()).find(|&face| face as usize != triangle)
+    };
+    let mut n_before: Vec<u8> = Vec::with_capacity(sides.len());
+    n_before.extend(sides.iter().enumerate().map(|(triangle, sides)| {
+        let is_behind = |(edge, facing): &&(u32, Facing)| {
+            *facing == Facing::Near && neighbor(triangle, *edge).is_some()
+        };
+        sides.iter().filter(is_behind).count() as u8
+    }));
+    let mut free: Vec<u32> =
+        (0..).zip(&n_before).filter(|(_, n)| **n == 0).map(|(t, _)| t).collect();
+    free.reverse();
+    let mut order = Vec::with_capacity(sides.len());
+    while let Some(triangle) = free.pop() {
+        order.push(triangle);
+        for (edge, facing) in sides[triangle as usize] {
+            if let (Facing::Far, Some(behind)) = (facing, neighbor(triangle as usize, edge)) {
+                let left = &mut n_before[behind as usize];
+                *left -= 1;
+                if *left == 0 {
+                    free.push(behind);
+                }
+            }
+        }
+    }
+    (order.len() == sides.len()).then_some(order)
+}
+
+/// The signs that reflect the only part of an orthographic view.
+fn signs(camera: &Camera) -> (f64, f64) {
+    let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
+    (sign(camera.forward().x), sign(camera.forward().y))
+}
+
+/// A part of the domain with its vertices in the plane of horizons.
+struct Part {
+    sight: Sight,
+    /// By number; only those within the part are right.
+    vertices: Vec<Vertex>,
+}
+
+fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
+    let horizons = tin.horizons()?;
+    let n_edges = tin.scene.topology().edges().len();
+    let status: Vec<AtomicU8> = (0..n_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
+    let reflections = if tin.is_perspective {
+        vec![(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+    } else {
+        vec![signs(&tin.camera)]
+    };
+    let mut pieces = Vec::new();
+    let mut work = Work::default();
+    for (sx, sy) in reflections {
+        let sight = Sight::new(&tin.camera, sx, sy, tin.centre);
+        let plane = Plane::new(tin, sight, tin.size);
+        let n_vertices = tin.scene.mesh().positions().len() as u32;
+        let vertices = (0..n_vertices).into_par_iter().map(|v| plane.vertex(v)).collect();
+        let part = Part { sight, vertices };
+        let ranges: Vec<Option<(f64, f64)>> =
+            tin.order.par_iter().map(|&triangle| part.range(tin, triangle)).collect();
+        let middles = ranges.iter().flatten().map(|(from, to)| from + (to - from) / 2.0);
+        let n_triangles = ranges.iter().flatten().count();
+        let strips =
+            strips(middles.collect(), n_triangles / triangles_per_strip.max(1), &sight, tin.size);
+        let margin = 4.0 * plane.du;
+        let found: Vec<_> = strips
+            .par_iter()
+            .with_max_len(1)
+            .map(|&(from, to)| {
+                let plane = Plane::new(tin, sight, tin.size);
+                let mut strip = Strip::new(plane, (from, to), horizons, &status);
+                for (&triangle, range) in tin.order.iter().zip(&ranges) {
+                    if range.is_some_and(|range| range.0 <= to + margin && range.1 >= from - margin)
+                    {
+                        part.visit(tin, triangle, &mut strip);
+                    }
+                }
+                (strip.work(), strip.found)
+            })
+            .collect();
+        for (strip_work, found) in found {
+            work += strip_work;
+            pieces.extend(found);
+        }
+    }
+    let status = status.into_iter().map(AtomicU8::into_inner).collect();
+    let mut pieces = GridPieces::join(0, 0, status, pieces);
+    pieces.work = work;
+    Some(pieces)
+}
+
+impl Part {
+    /// Whether a point lies beyond the part's borders x and y.
+    fn is_outside(&self, p: DVec3) -> (bool, bool) {
+        let Sight { centre, sx, sy, forward } = self.sight;
+        if forward.is_some() {
+            return (false, false);
+        }
+        (p.x * sx < centre.x * sx, p.y * sy < centre.y * sy)
+    }
+
+    /// The range of u that a triangle is within; `None` when it has nothing in the part.
+    fn range(&self, tin: &Tin, triangle: u32) -> Option<(f64, f64)> {
+        let corners = tin.scene.triangles()[triangle as usize];
+        let outside = corners.map(|v| self.is_outside(tin.point(v)));
+        if outside.iter().all(|o| o.0) || outside.iter().all(|o| o.1) {
+            return None;
+        }
+        let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+        for (v, outside) in corners.into_iter().zip(outside) {
+            let u = self.vertices[v as usize].u;
+            // What is beyond x comes in at u = −1, what is beyond y at u = 1; the eye's foot, whose u
+            // is no number, is next to all.
+            let (low, high) = match outside {
+                (false, false) if !u.is_nan() => (u, u),
+                (true, false) => (-1.0, -1.0),
+                (false, true) => (1.0, 1.0),
+                _ => (-1.0, 1.0),
+            };
+            range = (range.0.min(low), range.1.max(high));
+        }
+        Some(range)
+    }
+
+    /// Tests what a triangle adds and lets it hide.
+    fn visit(&self, tin: &Tin, triangle: u32, strip: &mut Strip<Tin>) {
+        let corners @ [a, b, c] = tin.scene.triangles()[triangle as usize];
+        let sides = tin.sides[triangle as usize];
+        let ends = [(a, b), (b, c), (c, a)];
+        for (k, ((a, b), (edge, facing))) in ends.into_iter().zip(sides).enumerate() {
+            if facing == Facing::Radial {
+                self.radial(tin, (a, b), edge, corners[(k + 2) % 3], strip);
+            }
+        }
+        let is_inside = corners.iter().all(|&v| self.is_outside(tin.point(v)) == (false, false));
+        let vertices = corners.map(|v| self.vertices[v as usize]);
+        if is_inside {
+            let us = vertices.map(|vertex| vertex.u);
+            let range = (us[0].min(us[1]).min(us[2]), us[0].max(us[1]).max(us[2]));
+            if !strip.visit(vertices, range) {
+                strip.leave();
+                return;
+            }
+        }
+        let mut draw = |wanted: Facing| {
+            for ((a, b), (edge, facing)) in ends.into_iter().zip(sides) {
+                let is_first = facing == Facing::Far || tin.is_border(edge);
+                if facing == wanted && is_first {
+                    self.draw(tin, (a, b), edge, strip);
+                }
+            }
+        };
+        draw(Facing::Near);
+        draw(Facing::Far);
+        strip.leave();
+    }
+
+    fn draw(&self, tin: &Tin, (a, b): (u32, u32), edge: u32, strip: &mut Strip<Tin>) {
+        let is_inside = [a, b].iter().all(|&v| self.is_outside(tin.point(v)) == (false, false));
+        if !is_inside {
+            strip.draw_clipped(a, b, edge);
+            return;
+        }
+        let [a, b] = [a, b].map(|v| self.vertices[v as usize]);
+        let segment = match strip.plane.order(a, b) {
+            Ordering::Less => strip.segment(a, b),
+            Ordering::Equal => None,
+            Ordering::Greater => strip.segment(b, a),
+        };
+        if let Some(segment) = segment {
+            strip.draw(&segment, edge);
+        }
+    }
+
+    /// Tests an edge in the vertical plane of the eye, beside the triangle with the given apex. On
+    /// the border of the domain nothing is beside it on the outer side, so it is wholly visible.
+    fn radial(&self, tin: &Tin, (a, b): (u32, u32), edge: u32, apex: u32, strip: &mut Strip<Tin>) {
+        if tin.is_border(edge) {
+            strip.draw_whole(edge);
+            return;
+        }
+        let Sight { centre, sx, sy, forward } = self.sight;
+        let place = |v: u32| {
+            let p = tin.point(v);
+            (p.x * sx, p.y * sy)
+        };
+        let (near, far) = if place(a) < place(b) { (a, b) } else { (b, a) };
+        let foot = (centre.x * sx, centre.y * sy);
+        let (from, to) = (place(near), place(far));
+        let mut t_foot = None;
+        if forward.is_none() {
+            if to == foot || self.is_outside(tin.point(far)) != (false, false) {
+                return;
+            }
+            if self.is_outside(tin.point(near)) != (false, false) {
+                let along = |from: f64, to: f64, foot: f64| (foot - from) / (to - from);
+                let is_steep = (to.1 - from.1).abs() > (to.0 - from.0).abs();
+                t_foot = Some(if is_steep {
+                    along(from.1, to.1, foot.1)
+                } else {
+                    along(from.0, to.0, foot.0)
+                });
+            }
+        }
+        let [near_at, far_at, apex_at] = [near, far, apex].map(|v| tin.point(v).truncate());
+        // u grows clockwise around the eye, the other way where one axis is reflected.
+        let is_right = (orient2d(near_at, far_at, apex_at) == Sign::Negative) == (sx * sy > 0.0);
+        strip.draw_radial((near, far), edge, is_right, t_foot);
+    }
+}
+
+/// The spans of the drawn edges.
+fn visibility(view: &ViewedScene, pieces: &GridPieces) -> Visibility {
+    let mut visibility = Visibility::default();
+    let mut spans: Vec<Span> = Vec::new();
+    for drawn in view.drawn() {
+        spans.clear();
+        let ends = view.scene().topology().edge(drawn.edge);
+        let is_kept = ends.iter().all(|&v| view.sight().near_distance(v).1 != Sign::Negative);
+        let mut at = 0.0;
+        let mut push = |t0: f64, t1: f64, qi: u32| {
+            if t0 < t1 {
+                spans.push(Span { t0, t1, qi, doubled: false });
+            }
+        };
+        match pieces.status[drawn.edge as usize] {
+            _ if !is_kept => {}
+            HIDDEN => push(0.0, 1.0, 1),
+            PARTLY => {
+                let first = pieces.pieces.partition_point(|piece| piece.edge < drawn.edge);
+                let own = pieces.pieces[first..].iter().take_while(|p| p.edge == drawn.edge);
+                for piece in own {
+                    push(at, piece.t0, 1);
+                    push(piece.t0.max(at), piece.t1, 0);
+                    at = piece.t1;
+                }
+                push(at, 1.0, 1);
+            }
+            _ => push(0.0, 1.0, 0),
+        }
+        visibility.push(&spans);
+    }
+    visibility
+}

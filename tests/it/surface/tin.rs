@@ -1,0 +1,197 @@
+//! Max-Min patches over triangulations, against all pairs of edge and triangle.
+
+use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, rough};
+use glam::{DVec3, dvec3};
+use hiddenline::classify::ViewedScene;
+use hiddenline::engines::edge::{Engine, Settings, solve};
+use hiddenline::engines::surface::tin;
+use hiddenline::formula::{Formula, Variables};
+use hiddenline::surface::{LatticeLines, LinedMesh, LinedScene, TrimmedGrid, delaunay};
+use hiddenline::view::{Camera, Projection};
+use hiddenline::visibility::Visibility;
+
+const ALL: LatticeLines =
+    LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: true };
+
+/// Visible parts of each drawn edge, joined where they touch.
+fn visible(visibility: &Visibility) -> Vec<Vec<(f64, f64)>> {
+    let of_edge = |k: usize| {
+        let mut ranges: Vec<(f64, f64)> = Vec::new();
+        for span in visibility.spans(k).iter().filter(|span| span.qi == 0) {
+            match ranges.last_mut() {
+                Some(last) if last.1 == span.t0 => last.1 = span.t1,
+                _ => ranges.push((span.t0, span.t1)),
+            }
+        }
+        ranges
+    };
+    (0..visibility.len()).map(of_edge).collect()
+}
+
+/// Length of what only one of them holds.
+fn difference(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
+    let mut cuts: Vec<f64> = a.iter().chain(b).flat_map(|&(t0, t1)| [t0, t1]).collect();
+    cuts.sort_by(f64::total_cmp);
+    let holds = |ranges: &[(f64, f64)], t: f64| ranges.iter().any(|r| r.0 < t && t < r.1);
+    cuts.windows(2)
+        .filter(|pair| {
+            let middle = (pair[0] + pair[1]) / 2.0;
+            holds(a, middle) != holds(b, middle)
+        })
+        .map(|pair| pair[1] - pair[0])
+        .sum()
+}
+
+/// Whether the horizons could draw it; panics where they differ from all pairs.
+fn check(surface: &LinedScene, camera: &Camera, name: &str) -> bool {
+    let view = ViewedScene::with_edges(&surface.scene, camera, surface.lines.clone());
+    let settings = Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let Some((by_horizons, _)) = tin::solve(&view) else { return false };
+    let (in_strips, _) = tin::solve_in_strips(&view, 3).expect("as in one strip");
+    let (expected, ..) = solve(&view, Engine::AllPairs, &settings);
+    let expected = visible(&expected);
+    for (how, found) in [("one strip", by_horizons), ("strips", in_strips)] {
+        for (k, (found, expected)) in visible(&found).iter().zip(&expected).enumerate() {
+            let ends = surface.scene.line(view.drawn()[k].edge);
+            let ends = ends.map(|v| surface.scene.mesh().positions()[v as usize]);
+            assert!(
+                difference(found, expected) < 1e-9,
+                "{name}, {how}: {ends:?} is visible at {expected:?}, not {found:?}\n{camera:?}"
+            );
+        }
+    }
+    true
+}
+
+/// Scattered points with whole coordinates; some share lines and circles.
+fn scattered(dice: &mut Dice, kind: u64, n: usize) -> Vec<DVec3> {
+    let mut points: Vec<DVec3> = Vec::new();
+    while points.len() < n {
+        let (x, y) = (dice.roll(9) as f64, dice.roll(9) as f64);
+        let z = match kind {
+            0 => dice.roll(16) as f64 - 8.0,
+            1 => dice.roll(2) as f64 * 12.0,
+            _ => dice.roll(3) as f64,
+        };
+        if points.iter().all(|p| (p.x, p.y) != (x, y)) {
+            points.push(dvec3(x, y, z));
+        }
+    }
+    points
+}
+
+fn lined(points: &[DVec3]) -> Option<LinedScene> {
+    let triangles = delaunay(points).ok()?;
+    let mut mesh = LinedMesh::default();
+    mesh.push_triangles(points, &triangles, true);
+    Some(mesh.into_scene().expect("a scene"))
+}
+
+#[test]
+fn scattered_points_equal_all_pairs_from_all_nine_regions() {
+    let mut dice = Dice(11);
+    let mut checked = 0;
+    for round in 0..720 {
+        let (kind, region) = (round % 3, round / 3 % 9);
+        let n = 4 + dice.roll(12) as usize;
+        let points = scattered(&mut dice, kind, n);
+        let Some(surface) = lined(&points) else { continue };
+        let range = [0.0, 2.0, 4.0, 6.0, 8.0];
+        let mut eye = dvec3(
+            coordinate(&mut dice, region % 3, &range),
+            coordinate(&mut dice, region / 3, &range),
+            (dice.roll(160) as f64 - 80.0) / 4.0,
+        );
+        if dice.roll(4) == 0 {
+            // Right above or below a point, or on the line of an edge.
+            let [a, b] = surface.scene.line(0).map(|v| points[v as usize % points.len()]);
+            let t = [0.0, 0.5, 2.0, -1.0][dice.roll(4) as usize];
+            (eye.x, eye.y) = (a.x + t * (b.x - a.x), a.y + t * (b.y - a.y));
+        }
+        // The whole surface is seen from beside it only; straight down or up it always is.
+        let target =
+            if region == 4 { eye - eye.z.signum() * DVec3::Z } else { dvec3(4.0, 4.0, 0.0) };
+        if target == eye {
+            continue;
+        }
+        let camera = camera(eye, target, PERSPECTIVE);
+        checked += u64::from(check(&surface, &camera, &format!("round {round}")));
+    }
+    assert!(checked > 300, "only {checked} scenes were drawn by horizons");
+}
+
+#[test]
+fn scattered_points_equal_all_pairs_in_orthographic_projection() {
+    let mut dice = Dice(12);
+    let mut checked = 0;
+    for round in 0..400 {
+        let n = 4 + dice.roll(12) as usize;
+        let points = scattered(&mut dice, round % 3, n);
+        let Some(surface) = lined(&points) else { continue };
+        let step = |dice: &mut Dice| dice.roll(7) as f64 - 3.0;
+        let forward = dvec3(step(&mut dice), step(&mut dice), step(&mut dice));
+        if forward == DVec3::ZERO {
+            continue;
+        }
+        let camera = camera(DVec3::ZERO, forward, Projection::Orthographic);
+        assert!(check(&surface, &camera, &format!("round {round}")), "round {round}: not drawn");
+        checked += 1;
+    }
+    assert!(checked > 350, "only {checked} scenes");
+}
+
+#[test]
+fn grids_with_level_curves_equal_all_pairs() {
+    let mut dice = Dice(13);
+    for round in 0..120 {
+        let (nx, ny) = (2 + dice.roll(4) as usize, 2 + dice.roll(4) as usize);
+        let grid = rough(&mut dice, round % 5, nx, ny);
+        let mut mesh = LinedMesh::default();
+        mesh.push_grid(&grid, &ALL);
+        mesh.add_levels(&[-2.5, 0.5, 1.0]);
+        let surface = mesh.into_scene().expect("a scene");
+        let eye = dvec3(-7.0 - dice.roll(9) as f64, 3.0 - dice.roll(20) as f64, 9.0);
+        let camera = camera(eye, dvec3(3.0, 3.0, 0.0), PERSPECTIVE);
+        check(&surface, &camera, &format!("round {round}"));
+    }
+}
+
+#[test]
+fn a_disk_is_drawn_by_horizons() {
+    let formula = |text| Formula::parse(text, Variables::Plane).expect("a formula");
+    let (z, disk) = (formula("sin(3*x)*cos(2*y)"), formula("x^2+y^2<=1"));
+    let grid = TrimmedGrid::sample(&z, &disk, (-1.5, 1.5), (-1.5, 1.5), (16, 16)).expect("a grid");
+    let mut mesh = LinedMesh::default();
+    mesh.push_trimmed(&grid, &ALL);
+    let surface = mesh.into_scene().expect("a scene");
+    for eye in [dvec3(4.0, -3.0, 2.0), dvec3(-0.3, 5.0, 0.5)] {
+        assert!(check(&surface, &camera(eye, DVec3::ZERO, PERSPECTIVE), "disk"));
+    }
+}
+
+#[test]
+fn what_is_no_function_over_a_convex_domain_is_left_to_mesh_engines() {
+    let eye = dvec3(9.0, -7.0, 6.0);
+    let camera = camera(eye, DVec3::ZERO, PERSPECTIVE);
+    let is_drawn = |points: &[DVec3], triangles: &[[u32; 3]]| {
+        let mut mesh = LinedMesh::default();
+        mesh.push_triangles(points, triangles, true);
+        let surface = mesh.into_scene().expect("a scene");
+        let view = ViewedScene::with_edges(&surface.scene, &camera, surface.lines.clone());
+        tin::solve(&view).is_some()
+    };
+    let plan = |corners: &[(f64, f64)]| -> Vec<DVec3> {
+        corners.iter().map(|&(x, y)| dvec3(x, y, 0.0)).collect()
+    };
+    let square = plan(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+    assert!(is_drawn(&square, &[[0, 1, 2], [0, 2, 3]]), "a square");
+    assert!(!is_drawn(&square, &[[0, 2, 1], [0, 3, 2]]), "seen from below it is wound so");
+    let bay = plan(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.5), (0.0, 2.0)]);
+    assert!(!is_drawn(&bay, &[[0, 1, 2], [0, 2, 3]]), "a bay");
+    let apart = plan(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (3.0, 0.0), (4.0, 0.0), (3.0, 1.0)]);
+    assert!(!is_drawn(&apart, &[[0, 1, 2], [3, 4, 5]]), "two pieces");
+    // Three blades around a hole, each beginning behind the one before.
+    let ring = plan(&[(0.0, 0.0), (6.0, 0.0), (3.0, 6.0), (2.0, 1.0), (4.0, 1.0), (3.0, 3.0)]);
+    let blades = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
+    assert!(!is_drawn(&ring, &blades), "a hole");
+}
