@@ -63,6 +63,13 @@ pub(super) struct Forest {
     fragments: Vec<Fragment>,
 }
 
+impl Forest {
+    /// All fragments, in no order.
+    pub(super) fn fragments(&self) -> &[Fragment] {
+        &self.fragments
+    }
+}
+
 /// A tree of planes over all faces of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tree {
@@ -119,13 +126,8 @@ impl Tree {
             if facing == Sign::Zero {
                 continue;
             }
-            match &near {
-                None => easel.paint(&mut painting, fragment, facing),
-                Some(near) => {
-                    if let Some(kept) = fragment.kept(&planes, near) {
-                        easel.paint(&mut painting, &kept, facing);
-                    }
-                }
+            if let Some(kept) = fragment.kept(&planes, near.as_ref()) {
+                easel.paint(&mut painting, &kept, facing);
             }
         }
         painting

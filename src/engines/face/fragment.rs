@@ -17,8 +17,10 @@ use super::painting::{NO_LINE, Painting};
 use crate::classify::ImagePoint;
 use crate::predicates::{Corner, Estimate, Place, Plane, PlaneName, Planes, Sign};
 use crate::scene::Scene;
-use crate::view::{Camera, Frame};
+use crate::view::{Camera, Frame, Projection};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// What a side of a fragment lies on, besides the plane of its triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -201,14 +203,14 @@ impl Fragment {
         }
     }
 
-    /// What the near plane keeps of it.
-    pub fn kept(&self, planes: &Planes, near: &Plane) -> Option<Self> {
+    /// What the near plane keeps of it; all when there is none.
+    pub fn kept(&self, planes: &Planes, near: Option<&Plane>) -> Option<Cow<'_, Self>> {
+        let Some(near) = near else { return Some(Cow::Borrowed(self)) };
         match self.position(planes, near) {
-            Position::Front => Some(self.clone()),
-            // In the near plane: kept like any border.
-            Position::Within => Some(self.clone()),
+            // What lies in the near plane is kept.
+            Position::Front | Position::Within => Some(Cow::Borrowed(self)),
             Position::Back => None,
-            Position::Across => Some(self.split(planes, near).0),
+            Position::Across => Some(Cow::Owned(self.split(planes, near).0)),
         }
     }
 
@@ -219,9 +221,13 @@ impl Fragment {
         let normals = self.sides.windows(2).map(|pair| {
             (pair[0].corner.point - origin).cross(pair[1].corner.point - origin)
         });
-        normals.sum::<glam::DVec3>().length() / 2.0
+        normals.sum::<DVec3>().length() / 2.0
     }
 }
+
+/// More than the roundings on the way to the image, as a part of the sizes that go in: one of the
+/// difference, three of each product, and those of the directions, some 8 units of 2⁻⁵³ together.
+const IMAGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
 /// Brings fragments onto paper.
 #[derive(Debug, Clone, Copy)]
@@ -240,6 +246,29 @@ impl<'a> Easel<'a> {
     /// The image of a corner, from its rounded point.
     pub fn image(&self, corner: &Corner) -> ImagePoint {
         ImagePoint::new(corner.point - self.camera.eye(), self.camera, &self.frame)
+    }
+
+    /// The image of a point that is off by up to `error`, and a bound of the image's own error;
+    /// infinite for a point that may not be in front of the eye.
+    pub(super) fn image_within(&self, point: DVec3, error: f64) -> (DVec2, f64) {
+        let d = point - self.camera.eye();
+        let image = ImagePoint::new(d, self.camera, &self.frame);
+        let error = 2.0 * error + IMAGE_ERROR * (d.length() + point.length());
+        match self.camera.projection() {
+            Projection::Orthographic => (image.image(), error),
+            Projection::Perspective { .. } if image.w > 2.0 * error => {
+                let at = image.image();
+                (at, 2.0 * error * (1.0 + at.length()) / image.w)
+            }
+            Projection::Perspective { .. } => (image.image(), f64::INFINITY),
+        }
+    }
+
+    /// The distance of a corner along the direction of view, and a bound of its error.
+    pub(super) fn depth_within(&self, corner: &Corner) -> (f64, f64) {
+        let d = corner.point - self.camera.eye();
+        let error = 2.0 * corner.error + IMAGE_ERROR * (d.length() + corner.point.length());
+        (d.dot(self.frame.forward), error)
     }
 
     /// The face that a fragment is part of.

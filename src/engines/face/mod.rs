@@ -11,7 +11,7 @@ pub mod fragment;
 pub mod octree;
 pub mod painting;
 
-mod occupancy;
+pub mod occupancy;
 
 pub use self::painting::{Painting, Piece};
 

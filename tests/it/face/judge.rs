@@ -34,7 +34,8 @@ impl<'a> World<'a> {
     pub(super) fn new(scene: &'a Scene, camera: &'a Camera) -> Self {
         let positions = scene.mesh().positions();
         // No origin of a ray is finer: see `ray`.
-        let numbers = positions.iter().chain([&camera.eye()]).flat_map(|p| p.to_array());
+        let eye = camera.eye();
+        let numbers = positions.iter().chain([&eye]).flat_map(|p| p.to_array());
         let exponent = common_exponent(numbers).min(-200);
         let exact = |p: DVec3| p.to_array().map(|x| scaled(x, exponent));
         let points: Vec<P> = positions.iter().map(|&p| exact(p)).collect();
