@@ -46,6 +46,10 @@ pub const LEAF_CAPACITY: usize = 48;
 /// How deep octants are, at most; what meets in one point cannot be parted.
 pub const MAX_DEPTH: u32 = 12;
 
+/// An octant that would be cut into more than this times its fragments is a leaf, however many it
+/// has: fans of long, thin faces would be cut again and again.
+pub const MAX_GROWTH: f64 = 1.5;
+
 /// No octant.
 const NONE: u32 = u32::MAX;
 
@@ -96,6 +100,8 @@ impl Tree {
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
         let fragments = Fragment::all(scene, &planes);
         let (low, high) = bounds(&fragments);
+        // A cube, so that flat scenes are not cut in their height.
+        let high = low + (high - low).max_element();
         let mut tasks = vec![Task { link: None, depth: 0, low, high, fragments }];
         let mut octants: Vec<Octant> = Vec::new();
         let mut leaves = Vec::new();
@@ -228,7 +234,7 @@ impl<'a> Leaves<'a> {
 
 enum Parted {
     Leaf(Vec<Fragment>),
-    Octants(DVec3, [Option<Task>; 8]),
+    Octants(DVec3, Box<[Option<Task>; 8]>),
 }
 
 /// Cuts fragments at the three planes through the center of an octant.
@@ -239,17 +245,24 @@ fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
     }
     let across = [0u8, 1, 2]
         .map(|axis| planes.plane(PlaneName::Across { axis, at: center[usize::from(axis)] }));
+    let n = task.fragments.len();
+    let mut of_parts = Counts::default();
     let mut parts: [Vec<Fragment>; 8] = Default::default();
-    parts[0] = task.fragments;
+    parts[0] = task.fragments.clone();
     for (axis, plane) in across.iter().enumerate() {
         for k in 0..1 << axis {
             for fragment in std::mem::take(&mut parts[k]) {
-                let (front, back) = fragment.parted(planes, plane, counts);
+                let (front, back) = fragment.parted(planes, plane, &mut of_parts);
                 parts[k | 1 << axis].extend(front);
                 parts[k].extend(back);
             }
         }
     }
+    counts.tests += of_parts.tests;
+    if (n as u64 + of_parts.splits) as f64 > MAX_GROWTH * n as f64 {
+        return Parted::Leaf(task.fragments);
+    }
+    counts.splits += of_parts.splits;
     let mut k = 0;
     let below = parts.map(|fragments| {
         let is_above = [0, 1, 2].map(|axis| k >> axis & 1 == 1);
@@ -263,7 +276,7 @@ fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
         let depth = task.depth + 1;
         (!fragments.is_empty()).then_some(Task { link: None, depth, low, high, fragments })
     });
-    Parted::Octants(center, below)
+    Parted::Octants(center, Box::new(below))
 }
 
 /// A box around fragments, roundings included.
