@@ -149,9 +149,7 @@ impl<'a> Planes<'a> {
     /// Whether a triangle has an area, exactly.
     pub fn has_area(&self, triangle: u32) -> bool {
         let plane = self.plane(PlaneName::Triangle(triangle));
-        if self.in_window
-            && plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any()
-        {
+        if self.in_window && plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any() {
             return true;
         }
         let [p, q, r] = plane.vertices.map(|vertex| self.position(vertex));

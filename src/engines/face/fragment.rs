@@ -143,8 +143,7 @@ impl Fragment {
         let n = self.sides.len();
         let mut front = Vec::with_capacity(n + 1);
         let mut back = Vec::with_capacity(n + 1);
-        let cut_from =
-            |corner: Corner| Side { corner, border: Border::Cut(name), line: NO_LINE };
+        let cut_from = |corner: Corner| Side { corner, border: Border::Cut(name), line: NO_LINE };
         for (i, side) in self.sides.iter().enumerate() {
             let j = (i + 1) % n;
             let (from, to) = (values[i].1, values[j].1);
@@ -218,9 +217,10 @@ impl Fragment {
     pub fn area(&self) -> f64 {
         let Some(first) = self.sides.first() else { return 0.0 };
         let origin = first.corner.point;
-        let normals = self.sides.windows(2).map(|pair| {
-            (pair[0].corner.point - origin).cross(pair[1].corner.point - origin)
-        });
+        let normals = self
+            .sides
+            .windows(2)
+            .map(|pair| (pair[0].corner.point - origin).cross(pair[1].corner.point - origin));
         normals.sum::<DVec3>().length() / 2.0
     }
 }

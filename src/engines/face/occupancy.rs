@@ -139,7 +139,8 @@ impl Occupancy {
         }
         let mut waiting = vec![(self.root, self.square())];
         while let Some((node, square)) = waiting.pop() {
-            let is_apart = low.cmpgt(square.low + square.size).any() || high.cmplt(square.low).any();
+            let is_apart =
+                low.cmpgt(square.low + square.size).any() || high.cmplt(square.low).any();
             match node {
                 COVERED => {}
                 _ if is_apart => {}

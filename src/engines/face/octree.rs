@@ -25,12 +25,21 @@
 //!
 //! # Size and time
 //!
-//! SIZES
+//! Two threads; painted from near to far, *left* counts the fragments that are not found hidden:
+//!
+//! | model | triangles | fragments | built | all painted | from near | left |
+//! |---|---|---|---|---|---|---|
+//! | street of large faces | 2 014 | 3 741 | 0.2 s | 2 ms | 40 ms | 2 271 |
+//! | bumpy sphere | 9 800 | 23 692 | 0.23 s | 21 ms | 266 ms | 19 147 |
+//! | town | 36 271 | 87 936 | 1.7 s | 74 ms | 0.4 s | 82 510 |
+//! | statue | 70 000 | 166 077 | 1.7 s | 102 ms | 1.4 s | 162 681 |
+//! | 10 000 boxes | 120 000 | 188 174 | 5.1 s | 94 ms | 1.0 s | 185 162 |
+//! | turbine blade | 199 034 | 444 965 | 3.9 s | 398 ms | 1.8 s | 442 395 |
 
 mod hidden;
 
 use super::Counts;
-use super::bsp::{Forest, Order, TooManyFragments};
+use super::bsp::{Forest, Order, TooManyFragments, check_piercings};
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
 use crate::predicates::{PlaneName, Planes, Sign};
@@ -95,8 +104,9 @@ impl Tree {
     /// threads. O(n log n) on meshes of small triangles.
     ///
     /// # Errors
-    /// When there would be too many fragments.
+    /// When there would be too many fragments, as for [`bsp::Tree::new`](super::bsp::Tree::new).
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
+        check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
         let fragments = Fragment::all(scene, &planes);
         let (low, high) = bounds(&fragments);

@@ -88,7 +88,10 @@ fn sides_of_fragments_sum_to_the_edges_that_they_lie_on() {
                     let expected = if is_border { a.distance(b) } else { 0.0 };
                     let found = found.unwrap_or(0.0);
                     let difference = (found - expected).abs();
-                    assert!(difference <= ROUNDING * a.distance(b), "seed {seed}: {found}, {expected}");
+                    assert!(
+                        difference <= ROUNDING * a.distance(b),
+                        "seed {seed}: {found}, {expected}"
+                    );
                 }
             }
         }

@@ -103,9 +103,9 @@ impl<'a> World<'a> {
             if sign(&slope) == 0 {
                 continue;
             }
-            let is_within = [(&a, &b), (&b, &c), (&c, &a)].iter().all(|(p, q)| {
-                sign(&dot(&cross(p, q), &direction)) * sign(&slope) >= 0
-            });
+            let is_within = [(&a, &b), (&b, &c), (&c, &a)]
+                .iter()
+                .all(|(p, q)| sign(&dot(&cross(p, q), &direction)) * sign(&slope) >= 0);
             let t = Ratio::new(dot(&normal, &a), slope);
             if is_within && self.is_kept(ray, &direction, &t) {
                 let hit = (t, self.faces[i]);
@@ -128,9 +128,13 @@ impl<'a> World<'a> {
         // t counts in 2^(exponent − of_direction).
         let left = &t.numerator * dot(direction, &forward);
         let right = Int::from(mantissa) * dot(&forward, &forward) * &t.denominator;
-        let shift = self.exponent - of_direction + of_direction + of_forward
-            - (of_near + 2 * of_forward);
-        if shift >= 0 { (left << shift as usize) >= right } else { left >= (right << (-shift) as usize) }
+        let shift =
+            self.exponent - of_direction + of_direction + of_forward - (of_near + 2 * of_forward);
+        if shift >= 0 {
+            (left << shift as usize) >= right
+        } else {
+            left >= (right << (-shift) as usize)
+        }
     }
 
     /// Compares a painting with rays on a grid of `n` by `n` points of its image; the number of points

@@ -54,7 +54,11 @@ impl Boxes {
                 let size = node.high - node.low;
                 let middle = |number: &u32| {
                     let item = &items[*number as usize];
-                    if size.x > size.y { item.low.x + item.high.x } else { item.low.y + item.high.y }
+                    if size.x > size.y {
+                        item.low.x + item.high.x
+                    } else {
+                        item.low.y + item.high.y
+                    }
                 };
                 let half = (last - first) / 2;
                 boxes.numbers[first..last]

@@ -5,7 +5,7 @@
 
 use super::boxes::Boxes;
 use super::relation::{is_across, may_precede};
-use super::{Error, Item, MAX_SPLITS};
+use super::{Error, Item, MAX_SPLITS, MAX_TESTS};
 use crate::engines::face::Counts;
 use crate::engines::face::fragment::Easel;
 use crate::predicates::{PlaneName, Planes};
@@ -145,7 +145,7 @@ impl<'a> List<'a> {
                         None => self.pass(),
                     },
                 }
-                if counts.splits > max_splits {
+                if counts.splits > max_splits || counts.tests > MAX_TESTS {
                     return Err(Error::TooManySplits(counts.splits));
                 }
             }
@@ -205,9 +205,8 @@ impl<'a> List<'a> {
     fn split_of_cycle(&self, height: usize) -> Option<(u32, u32)> {
         let members = || self.stack[height..].iter().rev().map(|entry| entry.item);
         let (first, last) = (self.stack.get(height)?.item, self.stack.last()?.item);
-        let is_across = |&(x, y): &(u32, u32)| {
-            x != y && is_across(self.planes, self.item(x), self.item(y))
-        };
+        let is_across =
+            |&(x, y): &(u32, u32)| x != y && is_across(self.planes, self.item(x), self.item(y));
         [(last, first), (first, last)]
             .into_iter()
             .chain(members().flat_map(|x| members().map(move |y| (x, y))))

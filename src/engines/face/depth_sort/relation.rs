@@ -65,9 +65,7 @@ pub(super) fn is_across(planes: &Planes, item: &Item, other: &Item) -> bool {
 fn images_overlap(planes: &Planes, p: &Item, q: &Item) -> bool {
     let parts = |a: &Item, b: &Item| {
         sides(&a.fragment).any(|(from, to)| {
-            b.fragment
-                .corners()
-                .all(|x| planes.turn(from, to, x).times(a.facing) != Sign::Positive)
+            b.fragment.corners().all(|x| planes.turn(from, to, x).times(a.facing) != Sign::Positive)
         })
     };
     !parts(p, q) && !parts(q, p)

@@ -97,7 +97,8 @@ impl View<'_> {
             let pick = |axis: usize| {
                 if corner >> axis & 1 == 1 { octant.high[axis] } else { octant.low[axis] }
             };
-            let (image, error) = self.easel.image_within(DVec3::new(pick(0), pick(1), pick(2)), 0.0);
+            let (image, error) =
+                self.easel.image_within(DVec3::new(pick(0), pick(1), pick(2)), 0.0);
             if !error.is_finite() {
                 return false;
             }
