@@ -1,0 +1,69 @@
+//! Models from elsewhere: rounded, open, crossing themselves.
+
+use super::ENGINES;
+use super::judge::World;
+use crate::image::model;
+use hiddenline::engines::face::{bsp, depth_sort, piercing};
+use hiddenline::framing::{Framing, NamedView, Standpoint};
+use hiddenline::read::read_file;
+use hiddenline::scene::Scene;
+use std::path::Path;
+
+const MODELS: [&str; 14] = [
+    "benchy_wheel.stl",
+    "cad_aatbase.stl",
+    "cad_angle_block_open.stl",
+    "concave_66gon.obj",
+    "cornell_box_negidx.obj",
+    "far_offset_tiny_cube.obj",
+    "kenney_street.obj",
+    "moebius.obj",
+    "naca0012_wing.stl",
+    "nonmanifold_crash.obj",
+    "openscad_example016.stl",
+    "platonic_shelf_ngons.obj",
+    "quadknot.obj",
+    "spot_control_quads.obj",
+];
+
+#[test]
+fn paintings_of_models_are_what_exact_rays_meet() {
+    for name in MODELS {
+        let Some(mesh) = model(name) else { return };
+        let scene = Scene::new(mesh);
+        let bounds = scene.mesh().bounds().unwrap();
+        let top = Standpoint::Named { view: NamedView::Top, distance: None };
+        for framing in [Framing::default(), Framing { standpoint: top, ..Framing::default() }] {
+            let camera = framing.camera(bounds).unwrap();
+            let world = World::new(&scene, &camera);
+            for (engine, solve) in ENGINES {
+                let (judged, _) = world
+                    .judge(&solve(&scene, &camera), 20)
+                    .unwrap_or_else(|problem| panic!("{name}, {engine}: {problem}"));
+                assert!(judged > 350, "{name}, {engine}: only {judged} points judged");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_model_is_refused() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models"));
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        eprintln!("no models in {}: skipped", folder.display());
+        return;
+    };
+    let mut n_models = 0;
+    for path in entries.map(|entry| entry.unwrap().path()) {
+        let is_model = path.extension().is_some_and(|kind| kind == "obj" || kind == "stl");
+        if !is_model {
+            continue;
+        }
+        let scene = Scene::new(read_file(&path, None).unwrap().mesh);
+        let (n, found) = (scene.triangles().len() as u64, piercing::estimate(&scene));
+        eprintln!("{}: {n} triangles, about {found} pairs pierce", path.display());
+        assert!(found <= depth_sort::MAX_PIERCINGS.min(bsp::MAX_PIERCINGS) * n);
+        n_models += 1;
+    }
+    assert!(n_models > 20);
+}
