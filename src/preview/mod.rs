@@ -21,7 +21,7 @@ use self::overlay::Overlay;
 use self::shade::Shader;
 use crate::engines::image::edge::center;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
-use crate::engines::image::{Engine, NOTHING, PixelMap, Raster, a_buffer, solve_strip};
+use crate::engines::image::{Engine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip};
 use crate::scene::Scene;
 use crate::stats::{Seconds, timed};
 use crate::strokes::Drawing;
@@ -165,7 +165,11 @@ pub fn write(
     };
     let fine = map.finer(samples);
     let raster = timed(&mut seconds.classify, || {
-        Raster::new(scene, camera, &fine, (width * samples, height * samples))
+        let size = (width * samples, height * samples);
+        match options.pixels {
+            Pixels::Centers(Engine::Painter) => painter::raster(scene, camera, &fine, size),
+            _ => Raster::new(scene, camera, &fine, size),
+        }
     });
     let shader =
         timed(&mut seconds.classify, || Shader::new(scene, camera, &fine, &raster, options));

@@ -47,6 +47,8 @@ pub use self::build::{
 };
 pub use self::walk::{Order, Walk};
 
+use std::borrow::Cow;
+
 use super::Counts;
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
@@ -132,19 +134,33 @@ impl Tree {
     /// The fragments from far to near, cut at the near plane. `scene` must be that of the tree.
     /// O(nodes + fragments).
     pub fn paint(&self, scene: &Scene, camera: &Camera) -> Painting {
-        let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
         let easel = Easel::new(scene, camera);
-        let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));
         let mut painting = Painting::new(false);
+        self.for_each(scene, camera, |fragment, facing| {
+            easel.paint(&mut painting, &fragment, facing);
+        });
+        painting
+    }
+
+    /// The same fragments, without painting them.
+    pub fn order(&self, scene: &Scene, camera: &Camera) -> Vec<Fragment> {
+        let mut fragments = Vec::with_capacity(self.fragments().len());
+        self.for_each(scene, camera, |fragment, _| fragments.push(fragment.into_owned()));
+        fragments
+    }
+
+    /// What a view shows of the fragments, from far to near, and the side that faces the eye.
+    fn for_each(&self, scene: &Scene, camera: &Camera, mut show: impl FnMut(Cow<Fragment>, Sign)) {
+        let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
+        let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));
         for (fragment, facing) in self.walk(&planes, Order::FarToNear) {
             if facing == Sign::Zero {
                 continue;
             }
             if let Some(kept) = fragment.kept(&planes, near.as_ref()) {
-                easel.paint(&mut painting, &kept, facing);
+                show(kept, facing);
             }
         }
-        painting
     }
 }
 

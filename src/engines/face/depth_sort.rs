@@ -153,6 +153,23 @@ impl Item {
 /// # Errors
 /// See [`Error`].
 pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error> {
+    let (fragments, mut counts) = order(scene, camera)?;
+    let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
+    let easel = Easel::new(scene, camera);
+    let mut painting = Painting::new(false);
+    for fragment in &fragments {
+        let facing = planes.side_of_eye(PlaneName::Triangle(fragment.triangle()));
+        easel.paint(&mut painting, fragment, facing);
+    }
+    counts.fragments = painting.len() as u64;
+    Ok((painting, counts))
+}
+
+/// The fragments of one view from far to near, cut at the near plane, without those edge-on.
+///
+/// # Errors
+/// See [`Error`].
+pub fn order(scene: &Scene, camera: &Camera) -> Result<(Vec<Fragment>, Counts), Error> {
     let n_piercings = piercing::estimate(scene);
     if n_piercings > MAX_PIERCINGS * scene.triangles().len() as u64 {
         return Err(Error::TooManyPiercings(n_piercings));
@@ -176,11 +193,6 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error
     }
     let mut counts = Counts::default();
     let order = list.sorted(&mut counts)?;
-    let mut painting = Painting::new(false);
-    for number in order {
-        let item = list.item(number);
-        easel.paint(&mut painting, &item.fragment, item.facing);
-    }
-    counts.fragments = painting.len() as u64;
-    Ok((painting, counts))
+    let fragments = order.iter().map(|&number| list.item(number).fragment.clone()).collect();
+    Ok((fragments, counts))
 }

@@ -16,7 +16,7 @@
 //! | [`spanning`] | edges and in/out flags | at both ends of every span | spans × triangles there |
 //! | [`watkins`] | lists S, A, H | where an edge, real or artificial, is met | edges met |
 //! | [`ray_cast`] | a tree of boxes | along one ray for each pixel | rays × log triangles |
-//! | [`painter`] | nothing | by the order of whole triangles: wrong where they cross | pixels covered |
+//! | [`painter`] | nothing | by the order of the faces' fragments | pixels covered |
 //! | [`a_buffer`] | fragments of each pixel | where fragments overlap | pixels covered × 4 |
 //!
 //! # The pixel rule
@@ -72,7 +72,7 @@ pub enum Engine {
     Watkins,
     /// One ray for each pixel.
     RayCast,
-    /// Triangles from far to near, each over the last: wrong where they cross or overlap in turn.
+    /// Faces from far to near, each over the last; for pictures that [`painter::raster`] made.
     Painter,
 }
 

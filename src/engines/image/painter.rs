@@ -1,28 +1,71 @@
-//! The painter: triangles from far to near, each painted over what is there.
+//! The painter: faces from far to near, each painted over what is there.
 //!
-//! Source: lecture notes on visibility (Slovak), section 3, without the tests and splits that follow
-//! there: triangles are ordered by their farthest point alone, as Newell, Newell and Sancha begin.
-//! Good for: convex bodies, terrains of small triangles, a first look; it keeps nothing but the order.
+//! ```text
+//!   engines::face ─► fragments from far to near ─► triangles in pixels, in that order ─► items
+//!                    faces that cross are cut                                  no depth is kept
+//! ```
 //!
-//! Cannot: triangles that cross; triangles that overlap in turn, three bars each over the next; a
-//! large triangle beside or below small ones, whose farthest point says little about the rest. There
-//! the picture differs from that of the other engines.
+//! Source: lecture notes on visibility (Slovak), section 3: Newell, Newell and Sancha's order with
+//! its tests and splits ([`depth_sort`]); scenes that would take too long to sort are ordered by a
+//! tree of planes ([`bsp`]), and those that have too many crossing faces for that, too, by the
+//! farthest corner of each triangle alone: then the picture may differ from that of the other engines
+//! where triangles cross or overlap in turn.
+//!
+//! Good for: a check of the order that fills are painted in; it keeps nothing but the order.
 
 use std::cmp::Reverse;
 
-use super::depth::Depth;
-use super::raster::{Raster, RasterTriangle, Strip, columns};
+use glam::DVec3;
 
-/// Fills the `items` of a strip. O(triangles log triangles + pixels they cover).
+use super::depth::Depth;
+use super::raster::{Corners, PixelMap, Raster, Strip, columns};
+use crate::engines::face::fragment::Easel;
+use crate::engines::face::{bsp, depth_sort};
+use crate::scene::Scene;
+use crate::view::Camera;
+
+/// The picture whose items are in the order of painting. O(triangles log triangles) usually; see
+/// [`depth_sort`].
+pub fn raster(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) -> Raster {
+    let fragments = match depth_sort::order(scene, camera) {
+        Ok((fragments, _)) => fragments,
+        Err(_) => match bsp::Tree::new(scene) {
+            Ok(tree) => tree.order(scene, camera),
+            Err(_) => return by_farthest_corner(scene, camera, map, size),
+        },
+    };
+    let (easel, view) = (Easel::new(scene, camera), Corners::new(scene, camera));
+    let mut triangles: Vec<([DVec3; 3], u32)> = Vec::with_capacity(fragments.len());
+    for fragment in &fragments {
+        let mut corners =
+            fragment.corners().map(|corner| view.in_pixels(&easel.image(corner), map));
+        let (Some(first), Some(mut last)) = (corners.next(), corners.next()) else { continue };
+        for corner in corners {
+            triangles.push(([first, last, corner], fragment.triangle()));
+            last = corner;
+        }
+    }
+    Raster::of_triangles(&triangles, size).seen_by(camera)
+}
+
+/// The order that Newell, Newell and Sancha begin with.
+fn by_farthest_corner(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) -> Raster {
+    let view = Corners::new(scene, camera);
+    let mut triangles: Vec<([DVec3; 3], u32)> = (0..scene.triangles().len() as u32)
+        .flat_map(|number| view.pieces(number).into_iter().flatten().map(move |c| (c, number)))
+        .map(|(corners, number)| (corners.map(|corner| view.in_pixels(&corner, map)), number))
+        .collect();
+    let farthest = |corners: &[DVec3; 3]| {
+        Depth::of(corners.map(|c| c.z).into_iter().fold(f64::INFINITY, f64::min))
+    };
+    triangles.sort_by_key(|(corners, number)| (farthest(corners), Reverse(*number)));
+    Raster::of_triangles(&triangles, size).seen_by(camera)
+}
+
+/// Fills the `items` of a strip of a picture that [`raster`] made. O(pixels that its triangles cover).
 pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
     let width = raster.width();
-    let mut order: Vec<(Depth, Reverse<u32>)> = strip
-        .triangles
-        .iter()
-        .map(|&number| (farthest(&raster.triangle(number)), Reverse(number)))
-        .collect();
-    order.sort_unstable();
-    for (_, Reverse(number)) in order {
+    for &number in strip.triangles {
         let triangle = raster.triangle(number);
         let edges = triangle.edges();
         for row in triangle.rows(&strip.rows) {
@@ -31,10 +74,4 @@ pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
             items[start + columns.start as usize..start + columns.end as usize].fill(number);
         }
     }
-}
-
-/// The depth of the farthest corner.
-fn farthest(triangle: &RasterTriangle) -> Depth {
-    let least = triangle.corners.map(|corner| triangle.plane.nearness_at(corner));
-    Depth::of(least[0].min(least[1]).min(least[2]))
 }

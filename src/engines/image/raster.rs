@@ -178,8 +178,7 @@ impl Raster {
     /// Triangles that no pixel center can be in are left out.
     pub fn new(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) -> Self {
         let view = Corners::new(scene, camera);
-        let in_pixels =
-            |corner: &ImagePoint| map.pixel(corner.image()).extend(view.nearness(corner));
+        let in_pixels = |corner: &ImagePoint| view.in_pixels(corner, map);
         let mut corners: Vec<DVec3> = view.images.par_iter().map(in_pixels).collect();
         let all = 0..scene.triangles().len() as u32;
         let is_cut = |triangle: u32| view.is_cut(scene.triangles()[triangle as usize]);
@@ -205,8 +204,7 @@ impl Raster {
             items.extend(pieces.iter().filter_map(|&(n, k)| item(n, [k, k + 1, k + 2])));
             items.sort_by_key(|item| item.triangle);
         }
-        let is_perspective = view.near.is_some();
-        Self { is_perspective, ..Self::listing(corners, items, size) }
+        Self::listing(corners, items, size).seen_by(camera)
     }
 
     /// A picture, without perspective, of triangles that are in pixels already, z being nearness;
@@ -217,6 +215,12 @@ impl Raster {
         });
         let items = items.collect();
         Self::listing(triangles.iter().flat_map(|(corners, _)| *corners).collect(), items, size)
+    }
+
+    /// Nearness is what it is for this camera.
+    pub(super) fn seen_by(self, camera: &Camera) -> Self {
+        let is_perspective = matches!(camera.projection(), Projection::Perspective { .. });
+        Self { is_perspective, ..self }
     }
 
     /// Lists the items strip by strip.
@@ -379,6 +383,12 @@ impl<'a> Corners<'a> {
     #[inline]
     fn nearness(&self, corner: &ImagePoint) -> f64 {
         if self.near.is_some() { 1.0 / corner.w } else { self.farthest - corner.depth }
+    }
+
+    /// A corner in pixels; z is its nearness.
+    #[inline]
+    pub(super) fn in_pixels(&self, corner: &ImagePoint, map: &PixelMap) -> DVec3 {
+        map.pixel(corner.image()).extend(self.nearness(corner))
     }
 
     /// The rectangle of the image that the triangles cover; `None` when there are none.
