@@ -67,6 +67,8 @@ pub mod scene;
 
 pub mod view;
 
+pub mod light;
+
 pub mod classify;
 
 pub mod framing;
@@ -84,6 +86,8 @@ pub mod chain;
 pub mod draw;
 
 pub mod plot;
+
+pub mod fill;
 
 pub mod line_svg;
 

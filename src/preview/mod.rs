@@ -21,6 +21,7 @@ use self::overlay::Overlay;
 use self::shade::Shader;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
 use crate::engines::image::{Engine, PixelMap, Raster, a_buffer, solve_strip};
+use crate::light::{DEFAULT_PAINT, to_bytes};
 use crate::scene::Scene;
 use crate::strokes::Drawing;
 use crate::view::Camera;
@@ -105,7 +106,7 @@ impl Default for Options {
             show: Show::default(),
             smooth_deg: None,
             light: None,
-            color: [0xd8, 0xd4, 0xc8],
+            color: DEFAULT_PAINT,
             background: None,
             fit_fov: false,
             stroke_px: 1.5,
@@ -234,9 +235,4 @@ fn shares(fine: &Raster, number: usize, opacity: f64, shader: &Shader) -> Vec<[u
         }
     });
     colors
-}
-
-/// A color with parts from 0 to 1 as bytes.
-fn to_bytes(color: DVec3) -> [u8; 3] {
-    (color * 255.0).round().to_array().map(|part| part.clamp(0.0, 255.0) as u8)
 }

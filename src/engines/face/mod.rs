@@ -11,7 +11,11 @@ pub mod region;
 
 pub mod images;
 
+mod boxes;
+
 pub mod merge;
+
+pub mod warnock;
 
 pub mod weiler_atherton;
 
@@ -71,6 +75,14 @@ pub enum FaceError {
         /// The engine that takes more.
         instead: &'static str,
     },
+    /// The leaves are too small.
+    #[error("{n:.0} leaves are too many; give a larger --leaf, {most:.0} are the most")]
+    TooManyLeaves {
+        /// How many there are.
+        n: f64,
+        /// How many there may be.
+        most: f64,
+    },
     /// The program was made without it.
     #[error("the engine {0} is not available")]
     NotAvailable(&'static str),
@@ -81,33 +93,60 @@ pub enum FaceError {
 pub struct Settings {
     /// The pieces are to lie beside each other: [`Engine::Auto`] takes an engine that finds them so.
     pub disjoint: bool,
-}
-
-/// The visible regions of a scene's faces, and the engine that found them.
-///
-/// # Errors
-/// See [`FaceError`]; all are told before any work is done but counting.
-pub fn solve(
-    scene: &Scene,
-    camera: &Camera,
-    engine: Engine,
-    settings: &Settings,
-) -> Result<(Painting, Engine), FaceError> {
-    let engine = match engine {
-        Engine::Auto if settings.disjoint || scene.triangles().len() <= FEW_TRIANGLES => {
-            Engine::WeilerAtherton
-        }
-        Engine::Auto => Engine::WeilerAtherton,
-        named => named,
-    };
-    let painting = match engine {
-        Engine::Auto | Engine::WeilerAtherton => weiler_atherton::solve(scene, camera)?,
-        Engine::DepthSort | Engine::Bsp | Engine::Octree | Engine::Warnock => {
-            return Err(FaceError::NotAvailable(engine.name()));
-        }
-    };
-    Ok((painting, engine))
+    /// Width of a leaf in image units, for [`Engine::Warnock`]; `None` for one that suits the image.
+    pub leaf: Option<f64>,
+    /// How [`Engine::Warnock`] divides windows.
+    pub subdivision: warnock::Subdivision,
 }
 
 /// Up to so many triangles [`Engine::Auto`] takes the engine with exact regions.
-const FEW_TRIANGLES: usize = 5000;
+pub const FEW_TRIANGLES: usize = 5000;
+
+/// A scene made ready for an engine, once for any number of views.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    scene: &'a Scene,
+    engine: Engine,
+}
+
+impl<'a> Prepared<'a> {
+    /// Chooses the engine and does what does not depend on the view.
+    pub fn new(scene: &'a Scene, engine: Engine, settings: &Settings) -> Self {
+        let is_small = scene.triangles().len() <= FEW_TRIANGLES;
+        let engine = match engine {
+            Engine::Auto if is_small || settings.disjoint => Engine::WeilerAtherton,
+            Engine::Auto => Engine::WeilerAtherton,
+            named => named,
+        };
+        Self { scene, engine }
+    }
+
+    /// The engine that was chosen.
+    pub fn engine(&self) -> Engine {
+        self.engine
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// The visible regions as a camera sees them.
+    ///
+    /// # Errors
+    /// See [`FaceError`]; all are told before any work is done but counting.
+    pub fn solve(&self, camera: &Camera, settings: &Settings) -> Result<Painting, FaceError> {
+        let scene = self.scene;
+        match self.engine {
+            Engine::Auto | Engine::WeilerAtherton => weiler_atherton::solve(scene, camera),
+            Engine::Warnock => {
+                let Settings { leaf, subdivision, .. } = *settings;
+                let options = warnock::Options { leaf, subdivision, window: None };
+                warnock::solve(scene, camera, &options)
+            }
+            Engine::DepthSort | Engine::Bsp | Engine::Octree => {
+                Err(FaceError::NotAvailable(self.engine.name()))
+            }
+        }
+    }
+}

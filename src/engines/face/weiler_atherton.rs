@@ -34,8 +34,7 @@
 //! worst; what overlaps is found by an index of boxes. About 1,000 faces a second a layer of depth
 //! on one core. Cannot: more than [`MOST_FACES`], which it refuses at once.
 
-use glam::DVec2;
-
+use super::boxes::BoxIndex;
 use super::images::{Images, Place};
 use super::painting::Painting;
 use super::region::Region;
@@ -45,9 +44,6 @@ use crate::view::Camera;
 
 /// More faces (triangles, of bent ones) in the image than this are refused.
 pub const MOST_FACES: usize = 30_000;
-
-/// Cells along each side of the index of boxes, at most.
-const MOST_CELLS: usize = 256;
 
 /// Finds the visible region of each face.
 ///
@@ -76,7 +72,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
     for (k, &flat) in order.iter().enumerate() {
         rank[flat as usize] = k;
     }
-    let index = Index::new(&images);
+    let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
     let mut work = Work { images: &images, clipping: vec![false; n], drawn: vec![Vec::new(); n] };
     // What is left of each polygon: L, and after each step O.
     let mut left: Vec<Region> = images.flats.iter().map(|flat| flat.region.clone()).collect();
@@ -183,55 +179,5 @@ impl Work<'_> {
             self.draw(first, region, inside);
             self.clipping[first as usize] = false;
         }
-    }
-}
-
-/// Polygons by the cells of the image that their boxes reach.
-struct Index {
-    low: DVec2,
-    cell: DVec2,
-    n: usize,
-    cells: Vec<Vec<u32>>,
-    boxes: Vec<(DVec2, DVec2)>,
-}
-
-impl Index {
-    fn new(images: &Images) -> Self {
-        let boxes: Vec<_> = images.flats.iter().map(|flat| flat.region.bounds()).collect();
-        let (low, high) = boxes
-            .iter()
-            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), b| (l.min(b.0), h.max(b.1)));
-        let n = ((boxes.len() as f64).sqrt() as usize).clamp(1, MOST_CELLS);
-        let size = if boxes.is_empty() { DVec2::ONE } else { high - low };
-        let cell = size / n as f64 + 1.0;
-        let cells = vec![Vec::new(); n * n];
-        let mut index = Self { low, cell, n, cells, boxes };
-        for number in 0..index.boxes.len() {
-            for cell in index.reached(index.boxes[number]) {
-                index.cells[cell].push(number as u32);
-            }
-        }
-        index
-    }
-
-    fn reached(&self, (low, high): (DVec2, DVec2)) -> impl Iterator<Item = usize> + use<> {
-        let n = self.n;
-        let cell = |at: f64| (at.max(0.0) as usize).min(n - 1);
-        let (from, to) = ((low - self.low) / self.cell, (high - self.low) / self.cell);
-        let (xs, ys) = (cell(from.x)..=cell(to.x), cell(from.y)..=cell(to.y));
-        ys.flat_map(move |y| xs.clone().map(move |x| y * n + x))
-    }
-
-    /// The polygons whose boxes overlap a box, in order.
-    fn overlapping(&self, bounds: (DVec2, DVec2), found: &mut Vec<u32>) {
-        found.clear();
-        for cell in self.reached(bounds) {
-            found.extend(self.cells[cell].iter().filter(|&&other| {
-                let (low, high) = self.boxes[other as usize];
-                low.cmplt(bounds.1).all() && bounds.0.cmplt(high).all()
-            }));
-        }
-        found.sort_unstable();
-        found.dedup();
     }
 }

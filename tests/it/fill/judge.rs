@@ -3,7 +3,7 @@
 use super::{built, painted};
 use crate::scenes::{number_of_scenes, random};
 use glam::{DVec2, DVec3};
-use hiddenline::engines::face::{Engine, Painting, Settings, solve};
+use hiddenline::engines::face::{Painting, weiler_atherton};
 use hiddenline::engines::image::raster::Corners;
 use hiddenline::scene::Scene;
 use hiddenline::view::{Camera, Projection};
@@ -92,8 +92,7 @@ fn weiler_and_athertons_regions_show_what_rays_in_space_meet() {
     let mut total = 0;
     for seed in 0..n {
         let (scene, camera) = built(&random(seed));
-        let (painting, _) =
-            solve(&scene, &camera, Engine::WeilerAtherton, &Settings::default()).unwrap();
+        let painting = weiler_atherton::solve(&scene, &camera).unwrap();
         total += judged(&format!("seed {seed}"), (&scene, &camera), &painting, 13, 0.0);
     }
     eprintln!("{total} points judged");
