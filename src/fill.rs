@@ -59,8 +59,11 @@ pub enum Palette {
 pub struct FillOptions {
     /// How visible regions are found.
     pub engine: Engine,
-    /// What the engine is told; areas beside each other are also made of those over each other.
+    /// What the engine is told.
     pub settings: Settings,
+    /// Areas lie beside each other, also where the engine paints them over each other; with a palette
+    /// they always do.
+    pub disjoint: bool,
     /// What the colors tell.
     pub show: Show,
     /// Where the light comes from, in world directions; `None` for the viewer's left shoulder.
@@ -133,8 +136,7 @@ impl Filled {
 /// See [`FillError`]; all are told before the work begins.
 pub fn fill(scene: &Scene, camera: &Camera, options: &FillOptions) -> Result<Filled, FillError> {
     options.check()?;
-    let settings = options.engine_settings();
-    fill_prepared(&Prepared::new(scene, options.engine, &settings), camera, options)
+    fill_prepared(&Prepared::new(scene, options.engine)?, camera, options)
 }
 
 /// The same for a scene that is ready for an engine, as for many views of it; the engine in the
@@ -148,7 +150,7 @@ pub fn fill_prepared(
     options: &FillOptions,
 ) -> Result<Filled, FillError> {
     options.check()?;
-    let painting = prepared.solve(camera, &options.engine_settings())?;
+    let painting = prepared.solve(camera, &options.settings)?;
     Ok(fill_painting(prepared.scene(), camera, &painting, prepared.engine(), options))
 }
 
@@ -168,12 +170,6 @@ impl FillOptions {
         }
         if (1..=MOST_INKS).contains(&n) { Ok(()) } else { Err(FillError::Inks(n)) }
     }
-
-    /// What the engine is told: inks must not overlap.
-    pub fn engine_settings(&self) -> Settings {
-        let disjoint = self.settings.disjoint || self.palette.is_some();
-        Settings { disjoint, ..self.settings }
-    }
 }
 
 /// Fills regions that are known already.
@@ -186,7 +182,7 @@ pub fn fill_painting(
 ) -> Filled {
     let colors = colors(scene, camera, painting, options);
     let n_pieces = painting.len();
-    let wants_disjoint = options.engine_settings().disjoint;
+    let wants_disjoint = options.disjoint || options.palette.is_some();
     let debugs_pieces = matches!(options.show, Show::Order | Show::Splits);
     let layers = match &options.palette {
         Some(palette) => layers_by_ink(painting, &colors, palette),

@@ -240,13 +240,13 @@ impl AreaArgs {
                 EngineName::WeilerAtherton => Engine::WeilerAtherton,
             },
             settings: Settings {
-                disjoint: self.disjoint,
                 leaf: None,
                 subdivision: match self.subdivision {
                     SubdivisionName::Regular => Subdivision::Regular,
                     SubdivisionName::Vertices => Subdivision::Vertices,
                 },
             },
+            disjoint: self.disjoint,
             show: match self.debug {
                 None => Show::Shaded,
                 Some(DebugName::Order) => Show::Order,
@@ -291,8 +291,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let scene = Scene::new(mesh);
         if crosses { scene.with_intersections() } else { scene }
     });
-    let settings = fill.engine_settings();
-    let prepared = timed(&mut seconds.visibility, || Prepared::new(&scene, fill.engine, &settings));
+    let prepared = timed(&mut seconds.visibility, || Prepared::new(&scene, fill.engine))?;
     stats.seconds = seconds;
     stats.engine = prepared.engine().name();
     count(&mut stats, &scene);
@@ -345,7 +344,12 @@ impl Picture<'_> {
         run.stats.seconds = seconds;
         let page = match &self.frame {
             Some(_) => rough,
-            None => Page::new(&filled.borders(), camera, &job.page)?,
+            None => {
+                // What is hidden has a part in the box, too, so that edges on top never leave it.
+                let mut borders = filled.borders();
+                frame_into(&mut borders, scene, std::slice::from_ref(camera));
+                Page::new(&borders, camera, &job.page)?
+            }
         };
         run.progress.stage("drawing");
         let engine = run.stats.engine;
@@ -387,13 +391,17 @@ fn count(stats: &mut Stats, scene: &Scene) {
 /// The rectangles around all that cameras see, as strokes.
 fn frame(scene: &Scene, cameras: &[Camera]) -> Drawing {
     let mut frame = Drawing::default();
+    frame_into(&mut frame, scene, cameras);
+    frame
+}
+
+fn frame_into(frame: &mut Drawing, scene: &Scene, cameras: &[Camera]) {
     for camera in cameras {
         if let Some((low, high)) = Corners::new(scene, camera).bounds() {
             let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y), low];
             frame.push(StrokeKind::Silhouette, 0, corners);
         }
     }
-    frame
 }
 
 /// The camera after a part of a turn around the vertical through its target.

@@ -9,7 +9,7 @@
 use super::Sign;
 use dashu_int::IBig;
 use glam::DVec3;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// Widest coordinate, in bits, whose triple products of differences fit `i128`:
 /// three factors of 41 bits and six terms need 126 bits and a sign.
@@ -243,6 +243,14 @@ impl Sub for Dyadic {
     fn sub(self, other: Self) -> Self {
         let (a, b, exponent) = self.aligned(other);
         Self { value: a - b, exponent }
+    }
+}
+
+impl Neg for Dyadic {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { value: -self.value, exponent: self.exponent }
     }
 }
 

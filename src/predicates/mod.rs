@@ -39,12 +39,16 @@
 pub mod cut;
 pub mod exact;
 
+mod corner;
 mod pierced;
+mod planes;
 mod sight;
 mod volume;
 
+pub use corner::{Corner, Place};
 pub use cut::{Cut, CutPlane};
 pub use pierced::{Homogeneous, PiercePoint};
+pub use planes::{Plane, PlaneName, Planes};
 pub use sight::{PlaneThrough, Sight, Slab, Viewpoint};
 pub use volume::{QuickPlane, Solid};
 

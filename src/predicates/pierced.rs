@@ -188,7 +188,7 @@ impl PiercePoint {
 }
 
 /// `a / b` rounded to within four units in the last place; `b` must not be zero.
-fn ratio(a: &Dyadic, b: &Dyadic) -> f64 {
+pub(super) fn ratio(a: &Dyadic, b: &Dyadic) -> f64 {
     let [a, b] = exact::same_scale([a.clone(), b.clone()]);
     exact::ratio(&a, &b)
 }

@@ -7,6 +7,7 @@ mod cli;
 mod closed_forms;
 mod drawings;
 mod engines;
+mod face;
 mod fill;
 mod formula;
 mod gallery;

@@ -5,7 +5,13 @@
 //!                   warnock, weiler_atherton ─► pieces beside each other ─┴─► Painting
 //! ```
 
+pub mod bsp;
+pub mod depth_sort;
+pub mod fragment;
+pub mod octree;
 pub mod painting;
+
+pub mod occupancy;
 
 pub mod region;
 
@@ -21,6 +27,7 @@ pub mod weiler_atherton;
 
 use thiserror::Error;
 
+pub use self::bsp::TooManyFragments;
 pub use self::painting::{Painting, Piece};
 use crate::scene::Scene;
 use crate::view::Camera;
@@ -41,6 +48,25 @@ pub enum Engine {
     Warnock,
     /// Faces clipped by nearer faces: exact regions beside each other.
     WeilerAtherton,
+}
+
+/// What an engine did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Fragments of faces that there are at the end.
+    pub fragments: u64,
+    /// Times that a fragment was cut in two, not counting cuts at the near plane.
+    pub splits: u64,
+    /// Times that a fragment was compared with a plane or with another fragment.
+    pub tests: u64,
+}
+
+impl Counts {
+    fn add(&mut self, other: Self) {
+        self.fragments += other.fragments;
+        self.splits += other.splits;
+        self.tests += other.tests;
+    }
 }
 
 impl Engine {
@@ -83,42 +109,60 @@ pub enum FaceError {
         /// How many there may be.
         most: f64,
     },
-    /// The program was made without it.
-    #[error("the engine {0} is not available")]
-    NotAvailable(&'static str),
+    /// The faces are cut into too many pieces.
+    #[error(transparent)]
+    TooManyFragments(#[from] TooManyFragments),
+    /// Sorting would take too long, or finds no order.
+    #[error(transparent)]
+    NoOrder(#[from] depth_sort::Error),
 }
 
 /// What engines can be told.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Settings {
-    /// The pieces are to lie beside each other: [`Engine::Auto`] takes an engine that finds them so.
-    pub disjoint: bool,
     /// Width of a leaf in image units, for [`Engine::Warnock`]; `None` for one that suits the image.
     pub leaf: Option<f64>,
     /// How [`Engine::Warnock`] divides windows.
     pub subdivision: warnock::Subdivision,
 }
 
-/// Up to so many triangles [`Engine::Auto`] takes the engine with exact regions.
-pub const FEW_TRIANGLES: usize = 5000;
+/// Up to so many triangles [`Engine::Auto`] takes [`Engine::WeilerAtherton`], whose regions are exact
+/// and whose files are the smallest; beyond, [`Engine::Bsp`] is faster.
+pub const MOST_EXACT: usize = 20_000;
 
 /// A scene made ready for an engine, once for any number of views.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     scene: &'a Scene,
     engine: Engine,
+    trees: Trees,
+}
+
+/// What an engine keeps from view to view.
+#[derive(Debug)]
+enum Trees {
+    None,
+    Planes(bsp::Tree),
+    Octants(octree::Tree),
 }
 
 impl<'a> Prepared<'a> {
     /// Chooses the engine and does what does not depend on the view.
-    pub fn new(scene: &'a Scene, engine: Engine, settings: &Settings) -> Self {
-        let is_small = scene.triangles().len() <= FEW_TRIANGLES;
+    ///
+    /// # Errors
+    /// [`FaceError::TooManyFragments`].
+    pub fn new(scene: &'a Scene, engine: Engine) -> Result<Self, FaceError> {
         let engine = match engine {
-            Engine::Auto if is_small || settings.disjoint => Engine::WeilerAtherton,
-            Engine::Auto => Engine::WeilerAtherton,
+            Engine::Auto if scene.triangles().len() <= MOST_EXACT => Engine::WeilerAtherton,
+            Engine::Auto => Engine::Bsp,
             named => named,
         };
-        Self { scene, engine }
+        let trees = match engine {
+            Engine::Bsp => Trees::Planes(bsp::Tree::new(scene)?),
+            Engine::Octree => Trees::Octants(octree::Tree::new(scene)?),
+            _ => Trees::None,
+        };
+        Ok(Self { scene, engine, trees })
     }
 
     /// The engine that was chosen.
@@ -137,15 +181,17 @@ impl<'a> Prepared<'a> {
     /// See [`FaceError`]; all are told before any work is done but counting.
     pub fn solve(&self, camera: &Camera, settings: &Settings) -> Result<Painting, FaceError> {
         let scene = self.scene;
-        match self.engine {
-            Engine::Auto | Engine::WeilerAtherton => weiler_atherton::solve(scene, camera),
-            Engine::Warnock => {
+        match (self.engine, &self.trees) {
+            (_, Trees::Planes(tree)) => Ok(tree.paint(scene, camera)),
+            (_, Trees::Octants(tree)) => Ok(tree.paint_seen(scene, camera)),
+            (Engine::DepthSort, _) => Ok(depth_sort::solve(scene, camera)?.0),
+            (Engine::Warnock, _) => {
                 let Settings { leaf, subdivision, .. } = *settings;
                 let options = warnock::Options { leaf, subdivision, window: None };
                 warnock::solve(scene, camera, &options)
             }
-            Engine::DepthSort | Engine::Bsp | Engine::Octree => {
-                Err(FaceError::NotAvailable(self.engine.name()))
+            (Engine::Auto | Engine::WeilerAtherton | Engine::Bsp | Engine::Octree, _) => {
+                weiler_atherton::solve(scene, camera)
             }
         }
     }

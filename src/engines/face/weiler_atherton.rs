@@ -43,7 +43,7 @@ use crate::scene::Scene;
 use crate::view::Camera;
 
 /// More faces (triangles, of bent ones) in the image than this are refused.
-pub const MOST_FACES: usize = 30_000;
+pub const MOST_FACES: usize = 300_000;
 
 /// Finds the visible region of each face.
 ///

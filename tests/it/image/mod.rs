@@ -36,7 +36,7 @@ fn face(scene: &Scene, raster: &Raster, item: u32) -> Option<u32> {
 }
 
 /// A model, unless the folder of models is missing.
-fn model(name: &str) -> Option<Mesh> {
+pub(crate) fn model(name: &str) -> Option<Mesh> {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models"));
     if !folder.is_dir() {
         eprintln!("no models in {}: skipped", folder.display());

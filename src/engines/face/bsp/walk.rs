@@ -1,0 +1,86 @@
+//! The walk of a tree of planes in the order of sight, without recursion: trees may be deep.
+
+use super::{Forest, NONE};
+use crate::engines::face::fragment::Fragment;
+use crate::predicates::{PlaneName, Planes, Sign};
+
+/// Which end of the order comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// What may be hidden first: the order of painting.
+    FarToNear,
+    /// What may hide first: for masks of what is done.
+    NearToFar,
+}
+
+/// The fragments of a tree in order of sight; see [`Tree::walk`](super::Tree::walk).
+#[derive(Debug)]
+pub struct Walk<'a> {
+    forest: &'a Forest,
+    planes: &'a Planes<'a>,
+    order: Order,
+    waiting: Vec<Visit>,
+    /// What is left of the fragments of one node, which lie in one plane.
+    here: &'a [Fragment],
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Visit {
+    Tree(u32),
+    Plane(u32),
+}
+
+impl Forest {
+    /// Walks one tree.
+    pub(in crate::engines::face) fn walk<'a>(
+        &'a self,
+        planes: &'a Planes<'a>,
+        root: u32,
+        order: Order,
+    ) -> Walk<'a> {
+        let waiting = vec![Visit::Tree(root)];
+        Walk { forest: self, planes, order, waiting, here: &[] }
+    }
+}
+
+impl<'a> Iterator for Walk<'a> {
+    type Item = (&'a Fragment, Sign);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let next = match self.order {
+                Order::FarToNear => self.here.split_first(),
+                Order::NearToFar => self.here.split_last(),
+            };
+            if let Some((fragment, rest)) = next {
+                self.here = rest;
+                // Its triangle may be wound against that which gave the plane.
+                let own = PlaneName::Triangle(fragment.triangle());
+                return Some((fragment, self.planes.side_of_eye(own)));
+            }
+            match self.waiting.pop()? {
+                Visit::Tree(NONE) => {}
+                Visit::Tree(number) => {
+                    let node = &self.forest.nodes[number as usize];
+                    let facing = self.planes.side_of_eye(node.plane);
+                    // With the eye in the plane neither side hides anything of the other.
+                    let (near, far) = if facing == Sign::Negative {
+                        (node.back, node.front)
+                    } else {
+                        (node.front, node.back)
+                    };
+                    let (first, last) = match self.order {
+                        Order::FarToNear => (far, near),
+                        Order::NearToFar => (near, far),
+                    };
+                    let plane = Visit::Plane(number);
+                    self.waiting.extend([Visit::Tree(last), plane, Visit::Tree(first)]);
+                }
+                Visit::Plane(number) => {
+                    let node = &self.forest.nodes[number as usize];
+                    self.here = &self.forest.fragments[node.first as usize..node.last as usize];
+                }
+            }
+        }
+    }
+}

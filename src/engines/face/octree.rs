@@ -1,0 +1,284 @@
+//! The painter with a tree of octants.
+//!
+//! ```text
+//!      ┌───────┬───┬───┐          faces are cut where octants meet; an octant with few fragments
+//!      │       │   ┊   │          is a leaf, and has a tree of planes of its own;
+//!      │   2   ├───┼───┤  3       seen from below left, quarter 0 may hide 1 and 2, these may
+//!      │       │   ┊   │          hide 3: the order of painting is 3, 2, 1, 0, in every octant
+//!      ├───────┼───┴───┤          anew as the eye stands to its center
+//!      │   0   │   1   │
+//!      └───────┴───────┘
+//!   eye
+//! ```
+//!
+//! From near to far the walk can leave out what is hidden: a quadtree of the image (`occupancy`)
+//! knows which squares are surely covered, and octants that fall on those are skipped with all that
+//! they hold. A fragment covers as soon as it is painted, a whole face as soon as its last fragment
+//! is, so large faces hide whole parts of a model; a surface of faces smaller than the smallest
+//! squares hides nothing.
+//!
+//! Source: lecture notes on visibility (Slovak), section 3.3, and those on octree methods after Hearn
+//! and Baker; the order of the leaves is that of [`bsp`](super::bsp).
+//!
+//! Good for: halls, towns, assemblies, where large faces hide much; the tree serves many views.
+//! Cannot: cut as little as [`bsp`](super::bsp) does, since octants ask for no face.
+//!
+//! # Size and time
+//!
+//! SIZES
+
+mod hidden;
+
+use super::Counts;
+use super::bsp::{Forest, Order, TooManyFragments};
+use super::fragment::{Easel, Fragment};
+use super::painting::Painting;
+use crate::predicates::{PlaneName, Planes, Sign};
+use crate::scene::Scene;
+use crate::view::Camera;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// An octant of at most this many fragments is a leaf. Smaller leaves cut more faces; larger ones
+/// are skipped more rarely and leave more to the trees of planes.
+pub const LEAF_CAPACITY: usize = 48;
+
+/// How deep octants are, at most; what meets in one point cannot be parted.
+pub const MAX_DEPTH: u32 = 12;
+
+/// No octant.
+const NONE: u32 = u32::MAX;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Contents {
+    /// Eight octants around a center. Bit k of the number of one says that it is on the positive side
+    /// across axis k.
+    Octants(DVec3, [u32; 8]),
+    /// A tree of planes.
+    Leaf(u32),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Octant {
+    contents: Contents,
+    /// A box around its fragments.
+    low: DVec3,
+    high: DVec3,
+}
+
+/// A tree of octants over all faces of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tree {
+    octants: Vec<Octant>,
+    forest: Forest,
+    /// How many fragments each face is cut into.
+    of_face: Vec<u32>,
+    counts: Counts,
+}
+
+/// An octant to be built.
+struct Task {
+    /// The octant above, and the number below it.
+    link: Option<(u32, usize)>,
+    depth: u32,
+    low: DVec3,
+    high: DVec3,
+    fragments: Vec<Fragment>,
+}
+
+impl Tree {
+    /// Builds the tree, all octants of one depth in parallel; it is the same for any number of
+    /// threads. O(n log n) on meshes of small triangles.
+    ///
+    /// # Errors
+    /// When there would be too many fragments.
+    pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
+        let planes = Planes::new(scene.mesh().positions(), scene.triangles());
+        let fragments = Fragment::all(scene, &planes);
+        let (low, high) = bounds(&fragments);
+        let mut tasks = vec![Task { link: None, depth: 0, low, high, fragments }];
+        let mut octants: Vec<Octant> = Vec::new();
+        let mut leaves = Vec::new();
+        let mut counts = Counts::default();
+        while !tasks.is_empty() {
+            let grown: Vec<_> = tasks
+                .into_par_iter()
+                .map(|task| {
+                    let mut counts = Counts::default();
+                    let (low, high) = bounds(&task.fragments);
+                    (low, high, task.link, part(&planes, task, &mut counts), counts)
+                })
+                .collect();
+            tasks = Vec::new();
+            for (low, high, link, parted, of_task) in grown {
+                counts.add(of_task);
+                let number = octants.len() as u32;
+                let contents = match parted {
+                    Parted::Leaf(fragments) => {
+                        leaves.push(fragments);
+                        Contents::Leaf(leaves.len() as u32 - 1)
+                    }
+                    Parted::Octants(center, below) => {
+                        tasks.extend(below.into_iter().enumerate().filter_map(|(k, task)| {
+                            Some(Task { link: Some((number, k)), ..task? })
+                        }));
+                        Contents::Octants(center, [NONE; 8])
+                    }
+                };
+                octants.push(Octant { contents, low, high });
+                if let Some((above, k)) = link
+                    && let Contents::Octants(_, numbers) = &mut octants[above as usize].contents
+                {
+                    numbers[k] = number;
+                }
+            }
+        }
+        let mut forest = Forest::default();
+        let roots = forest.grow(scene, &planes, leaves, &mut counts)?;
+        for octant in &mut octants {
+            if let Contents::Leaf(leaf) = &mut octant.contents {
+                *leaf = roots[*leaf as usize];
+            }
+        }
+        let mut of_face = vec![0; scene.mesh().n_faces()];
+        for fragment in forest.fragments() {
+            of_face[scene.triangle_faces()[fragment.triangle() as usize] as usize] += 1;
+        }
+        counts.fragments = forest.fragments().len() as u64;
+        Ok(Self { octants, forest, of_face, counts })
+    }
+
+    /// All fragments, in no order.
+    pub fn fragments(&self) -> &[Fragment] {
+        self.forest.fragments()
+    }
+
+    /// What building took.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Number of octants, leaves included.
+    pub fn n_octants(&self) -> usize {
+        self.octants.len()
+    }
+
+    /// All fragments from far to near, cut at the near plane. `scene` must be that of the tree.
+    pub fn paint(&self, scene: &Scene, camera: &Camera) -> Painting {
+        let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
+        let easel = Easel::new(scene, camera);
+        let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));
+        let mut painting = Painting::new(false);
+        let mut leaves = Leaves::new(self, &planes, Order::FarToNear);
+        while let Some(root) = leaves.next(|_| true) {
+            for (fragment, facing) in self.forest.walk(&planes, root, Order::FarToNear) {
+                if facing == Sign::Zero {
+                    continue;
+                }
+                if let Some(kept) = fragment.kept(&planes, near.as_ref()) {
+                    easel.paint(&mut painting, &kept, facing);
+                }
+            }
+        }
+        painting
+    }
+}
+
+/// The leaves in order of sight.
+struct Leaves<'a> {
+    tree: &'a Tree,
+    planes: &'a Planes<'a>,
+    order: Order,
+    waiting: Vec<u32>,
+}
+
+impl<'a> Leaves<'a> {
+    fn new(tree: &'a Tree, planes: &'a Planes<'a>, order: Order) -> Self {
+        Self { tree, planes, order, waiting: vec![0] }
+    }
+
+    /// The tree of planes of the next leaf, leaving out octants that are not `wanted`.
+    fn next(&mut self, mut wanted: impl FnMut(&Octant) -> bool) -> Option<u32> {
+        loop {
+            let number = self.waiting.pop()?;
+            let Some(octant) = self.tree.octants.get(number as usize) else { continue };
+            if !wanted(octant) {
+                continue;
+            }
+            match octant.contents {
+                Contents::Leaf(root) => return Some(root),
+                Contents::Octants(center, numbers) => {
+                    let is_above = |axis: u8| {
+                        let at = center[usize::from(axis)];
+                        let side = self.planes.side_of_eye(PlaneName::Across { axis, at });
+                        usize::from(side == Sign::Positive) << axis
+                    };
+                    let nearest = is_above(0) | is_above(1) | is_above(2);
+                    // Numbers that differ from the nearest in fewer axes come earlier: 0, 1, 2, …
+                    let nth = |k: usize| numbers[nearest ^ k];
+                    match self.order {
+                        Order::NearToFar => self.waiting.extend((0..8).rev().map(nth)),
+                        Order::FarToNear => self.waiting.extend((0..8).map(nth)),
+                    }
+                }
+            }
+        }
+    }
+}
+
+enum Parted {
+    Leaf(Vec<Fragment>),
+    Octants(DVec3, [Option<Task>; 8]),
+}
+
+/// Cuts fragments at the three planes through the center of an octant.
+fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
+    let center = task.low + (task.high - task.low) / 2.0;
+    if task.fragments.len() <= LEAF_CAPACITY || task.depth >= MAX_DEPTH || !center.is_finite() {
+        return Parted::Leaf(task.fragments);
+    }
+    let across = [0u8, 1, 2]
+        .map(|axis| planes.plane(PlaneName::Across { axis, at: center[usize::from(axis)] }));
+    let mut parts: [Vec<Fragment>; 8] = Default::default();
+    parts[0] = task.fragments;
+    for (axis, plane) in across.iter().enumerate() {
+        for k in 0..1 << axis {
+            for fragment in std::mem::take(&mut parts[k]) {
+                let (front, back) = fragment.parted(planes, plane, counts);
+                parts[k | 1 << axis].extend(front);
+                parts[k].extend(back);
+            }
+        }
+    }
+    let mut k = 0;
+    let below = parts.map(|fragments| {
+        let is_above = [0, 1, 2].map(|axis| k >> axis & 1 == 1);
+        k += 1;
+        let low = DVec3::from_array(std::array::from_fn(|i| {
+            if is_above[i] { center[i] } else { task.low[i] }
+        }));
+        let high = DVec3::from_array(std::array::from_fn(|i| {
+            if is_above[i] { task.high[i] } else { center[i] }
+        }));
+        let depth = task.depth + 1;
+        (!fragments.is_empty()).then_some(Task { link: None, depth, low, high, fragments })
+    });
+    Parted::Octants(center, below)
+}
+
+/// A box around fragments, roundings included.
+fn bounds(fragments: &[Fragment]) -> (DVec3, DVec3) {
+    let corners = || fragments.iter().flat_map(Fragment::corners);
+    let low = corners().fold(DVec3::INFINITY, |low, c| low.min(c.point - c.error));
+    (low, corners().fold(DVec3::NEG_INFINITY, |high, c| high.max(c.point + c.error)))
+}
+
+/// Builds a tree and paints one view, leaving out what it finds hidden: see [`Tree::paint_seen`].
+///
+/// # Errors
+/// As [`Tree::new`].
+pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), TooManyFragments> {
+    let tree = Tree::new(scene)?;
+    let painting = tree.paint_seen(scene, camera);
+    Ok((painting, tree.counts()))
+}

@@ -1,0 +1,20 @@
+//! The face engines: what they paint, against exact rays.
+
+mod fragments;
+mod judge;
+mod models;
+mod order;
+
+use hiddenline::engines::face::{Painting, bsp, depth_sort, octree};
+use hiddenline::scene::Scene;
+use hiddenline::view::Camera;
+
+/// A list-priority engine.
+type Solve = fn(&Scene, &Camera) -> Painting;
+
+const ENGINES: [(&str, Solve); 4] = [
+    ("bsp", |scene, camera| bsp::solve(scene, camera).unwrap().0),
+    ("octree", |scene, camera| octree::solve(scene, camera).unwrap().0),
+    ("octree, all", |scene, camera| octree::Tree::new(scene).unwrap().paint(scene, camera)),
+    ("depth sort", |scene, camera| depth_sort::solve(scene, camera).unwrap().0),
+];

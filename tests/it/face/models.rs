@@ -1,0 +1,44 @@
+//! Models from elsewhere: rounded, open, crossing themselves.
+
+use super::ENGINES;
+use super::judge::World;
+use crate::image::model;
+use hiddenline::framing::{Framing, NamedView, Standpoint};
+use hiddenline::scene::Scene;
+
+const MODELS: [&str; 14] = [
+    "benchy_wheel.stl",
+    "cad_aatbase.stl",
+    "cad_angle_block_open.stl",
+    "concave_66gon.obj",
+    "cornell_box_negidx.obj",
+    "far_offset_tiny_cube.obj",
+    "kenney_street.obj",
+    "moebius.obj",
+    "naca0012_wing.stl",
+    "nonmanifold_crash.obj",
+    "openscad_example016.stl",
+    "platonic_shelf_ngons.obj",
+    "quadknot.obj",
+    "spot_control_quads.obj",
+];
+
+#[test]
+fn paintings_of_models_are_what_exact_rays_meet() {
+    for name in MODELS {
+        let Some(mesh) = model(name) else { return };
+        let scene = Scene::new(mesh);
+        let bounds = scene.mesh().bounds().unwrap();
+        let top = Standpoint::Named { view: NamedView::Top, distance: None };
+        for framing in [Framing::default(), Framing { standpoint: top, ..Framing::default() }] {
+            let camera = framing.camera(bounds).unwrap();
+            let world = World::new(&scene, &camera);
+            for (engine, solve) in ENGINES {
+                let (judged, _) = world
+                    .judge(&solve(&scene, &camera), 20)
+                    .unwrap_or_else(|problem| panic!("{name}, {engine}: {problem}"));
+                assert!(judged > 350, "{name}, {engine}: only {judged} points judged");
+            }
+        }
+    }
+}
