@@ -12,12 +12,12 @@
 //!                  │                                       │
 //!   view ──────► classify ─► engines::edge ─► visibility   │
 //!   framing    faces, edges  what is hidden   spans of qi  │
-//!                                                  │       │
-//!                                                chain     │
-//!                                                  ▼       ▼
-//!                                               strokes: polylines in the image
-//!                                                  │
-//!                                                page: placement on paper
+//!      │                                           │       │
+//!      ├───────► engines::face                   chain     │
+//!      │         regions of faces                  ▼       ▼
+//!      ▼               │                        strokes: polylines in the image
+//!    light ─────────► fill                         │
+//!                 colored areas ──────────────► page: placement on paper
 //!                                                  ▼
 //!  line SVG ─► line_svg ──────────────────────► plot: millimetres, a layer a pen
 //!                                                  │

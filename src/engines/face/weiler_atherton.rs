@@ -34,6 +34,11 @@
 //! worst; what overlaps is found by an index of boxes. About 1,000 faces a second a layer of depth
 //! on one core. Cannot: more than [`MOST_FACES`], which it refuses at once.
 
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
 use super::boxes::BoxIndex;
 use super::images::{Images, Place};
 use super::painting::Painting;
@@ -44,6 +49,9 @@ use crate::view::Camera;
 
 /// More faces (triangles, of bent ones) in the image than this are refused.
 pub const MOST_FACES: usize = 300_000;
+
+/// Polygons that one piece of parallel work compares with the first one, at least.
+const MIN_LEN: usize = 8;
 
 /// Finds the visible region of each face.
 ///
@@ -75,10 +83,11 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
     let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
     let mut work = Work { images: &images, clipping: vec![false; n], drawn: vec![Vec::new(); n] };
     // What is left of each polygon: L, and after each step O.
-    let mut left: Vec<Region> = images.flats.iter().map(|flat| flat.region.clone()).collect();
+    let mut left: Vec<Rest> =
+        images.flats.iter().map(|flat| Rest::new(flat.region.clone())).collect();
     let mut near = Vec::new();
     for &first in &order {
-        let region = std::mem::take(&mut left[first as usize]);
+        let region = std::mem::take(&mut left[first as usize]).region();
         if region.is_empty() {
             continue;
         }
@@ -86,16 +95,15 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
         near.retain(|&other| rank[other as usize] > rank[first as usize]);
         near.sort_by_key(|&other| rank[other as usize]);
         work.clipping[first as usize] = true;
-        let mut inside = Vec::new();
+        let in_front = near
+            .par_iter()
+            .with_min_len(MIN_LEN)
+            .map(|&other| (other, work.in_front(first, &region, other, &left[other as usize])));
+        let mut inside: Vec<(u32, Region)> = in_front.collect();
+        inside.retain(|(_, front)| !front.is_empty());
+        let region = Arc::new(region);
         for &other in &near {
-            let rest = &mut left[other as usize];
-            if !rest.boxes_overlap(&region) {
-                continue;
-            }
-            let front = work.clip(first, &region, other, rest);
-            if !front.is_empty() {
-                inside.push((other, front));
-            }
+            left[other as usize].leave_out(&region);
         }
         work.draw(first, region, inside);
         work.clipping[first as usize] = false;
@@ -113,21 +121,17 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Clips what is left of polygon `other` by `region` of polygon `first`: leaves the outside, and
-    /// gives what of the inside is in front.
-    fn clip(&self, first: u32, region: &Region, other: u32, left: &mut Region) -> Region {
-        let images = self.images;
+    /// What of the rest of polygon `other` lies within `region` of polygon `first` and in front of it.
+    fn in_front(&self, first: u32, region: &Region, other: u32, left: &Rest) -> Region {
         let (this, that) = (first as usize, other as usize);
-        let front = match images.place(this, that) {
+        match self.images.place(this, that) {
             Place::Behind => Region::default(),
             Place::InFront => left.within(region),
             Place::Crossing => {
                 let inside = left.within(region);
                 if inside.is_empty() { inside } else { self.nearer_part(inside, this, that) }
             }
-        };
-        *left = left.without(region);
-        front
+        }
     }
 
     /// The part of `inside` where `that` is nearer than `this`, cut where they are equally near.
@@ -144,20 +148,21 @@ impl Work<'_> {
     }
 
     /// Draws `region` of polygon `first`, which is in S, after what is in front of it.
-    fn draw(&mut self, first: u32, region: Region, in_front: Vec<(u32, Region)>) {
+    fn draw(&mut self, first: u32, region: Arc<Region>, in_front: Vec<(u32, Region)>) {
         if in_front.is_empty() {
-            self.drawn[first as usize].push(region);
+            self.drawn[first as usize].push(Arc::unwrap_or_clone(region));
             return;
         }
-        let mut list = in_front;
-        list.push((first, region));
+        let mut list: VecDeque<(u32, Rest)> =
+            in_front.into_iter().map(|(other, front)| (other, Rest::new(front))).collect();
+        list.push_back((first, Rest::new(Arc::unwrap_or_clone(region))));
         self.solve(list);
     }
 
     /// The algorithm on a list L, sorted from near to far.
-    fn solve(&mut self, list: Vec<(u32, Region)>) {
-        let mut list = std::collections::VecDeque::from(list);
-        while let Some((first, region)) = list.pop_front() {
+    fn solve(&mut self, mut list: VecDeque<(u32, Rest)>) {
+        while let Some((first, rest)) = list.pop_front() {
+            let region = rest.region();
             if region.is_empty() {
                 continue;
             }
@@ -167,17 +172,52 @@ impl Work<'_> {
             }
             self.clipping[first as usize] = true;
             let mut inside = Vec::new();
+            let region = Arc::new(region);
             for (other, left) in &mut list {
-                if !left.boxes_overlap(&region) {
-                    continue;
+                // What clips at the moment comes last: all before it is in front of it.
+                if !self.clipping[*other as usize] {
+                    let front = self.in_front(first, &region, *other, left);
+                    if !front.is_empty() {
+                        inside.push((*other, front));
+                    }
                 }
-                let front = self.clip(first, &region, *other, left);
-                if !front.is_empty() && !self.clipping[*other as usize] {
-                    inside.push((*other, front));
-                }
+                left.leave_out(&region);
             }
             self.draw(first, region, inside);
             self.clipping[first as usize] = false;
         }
+    }
+}
+
+/// What is left of a polygon. What clips it is kept beside it and taken off in one operation when the
+/// polygon comes up, so its border is rounded once, and the cost of many clips does not add up.
+#[derive(Debug, Default)]
+struct Rest {
+    region: Region,
+    without: Vec<Arc<Region>>,
+}
+
+impl Rest {
+    fn new(region: Region) -> Self {
+        Self { region, without: Vec::new() }
+    }
+
+    fn leave_out(&mut self, clip: &Arc<Region>) {
+        if self.region.boxes_overlap(clip) {
+            self.without.push(Arc::clone(clip));
+        }
+    }
+
+    fn within(&self, region: &Region) -> Region {
+        let inside = self.region.within(region);
+        if inside.is_empty() {
+            return inside;
+        }
+        let near = self.without.iter().filter(|clip| clip.boxes_overlap(&inside));
+        inside.without_all(near.map(Arc::as_ref))
+    }
+
+    fn region(self) -> Region {
+        self.region.without_all(self.without.iter().map(Arc::as_ref))
     }
 }

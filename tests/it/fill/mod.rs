@@ -1,7 +1,11 @@
 //! Faces as polygons: the engines that clip and divide the image, and what becomes of their regions.
 
+mod borders;
+mod colors;
 mod judge;
+mod program;
 mod regions;
+mod warnock;
 
 use crate::engines::{camera, mesh};
 use crate::scenes::Scene as TestScene;
