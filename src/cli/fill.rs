@@ -145,7 +145,7 @@ enum EngineName {
     Octree,
     /// By windows of the image down to a leaf; few, large faces
     Warnock,
-    /// Exact regions beside each other; cutters, engravers, inks; up to 30,000 faces
+    /// Exact regions beside each other; cutters, engravers, inks; up to 10,000 faces
     WeilerAtherton,
 }
 

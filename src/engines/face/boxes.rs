@@ -6,7 +6,7 @@ use glam::DVec2;
 const MOST_CELLS: usize = 256;
 
 /// Boxes by the cells of the image that they reach.
-pub(super) struct BoxIndex {
+pub(crate) struct BoxIndex {
     low: DVec2,
     cell: DVec2,
     n: usize,
@@ -16,7 +16,7 @@ pub(super) struct BoxIndex {
 
 impl BoxIndex {
     /// Boxes as (lowest, highest) corner. O(boxes + cells they reach).
-    pub(super) fn new(boxes: Vec<(DVec2, DVec2)>) -> Self {
+    pub(crate) fn new(boxes: Vec<(DVec2, DVec2)>) -> Self {
         let (low, high) = boxes
             .iter()
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), b| (l.min(b.0), h.max(b.1)));
@@ -42,7 +42,7 @@ impl BoxIndex {
     }
 
     /// The boxes that have more than a border in common with a box, in order.
-    pub(super) fn overlapping(&self, bounds: (DVec2, DVec2), found: &mut Vec<u32>) {
+    pub(crate) fn overlapping(&self, bounds: (DVec2, DVec2), found: &mut Vec<u32>) {
         found.clear();
         for cell in self.reached(bounds) {
             found.extend(self.cells[cell].iter().filter(|&&other| {

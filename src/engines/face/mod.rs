@@ -17,7 +17,7 @@ pub mod region;
 
 pub mod images;
 
-mod boxes;
+pub(crate) mod boxes;
 
 pub mod merge;
 
@@ -128,7 +128,7 @@ pub struct Settings {
 
 /// Up to so many triangles [`Engine::Auto`] takes [`Engine::WeilerAtherton`], whose regions are exact
 /// and whose files are the smallest; beyond, [`Engine::Bsp`] is faster.
-pub const MOST_EXACT: usize = 20_000;
+pub const MOST_EXACT: usize = 6_000;
 
 /// A scene made ready for an engine, once for any number of views.
 #[derive(Debug)]

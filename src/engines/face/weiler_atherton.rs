@@ -30,9 +30,10 @@
 //! Exactness: what is in front is decided exactly, by [`Images::place`], but for faces that pierce
 //! each other, whose line is rounded to the grid like all points; see [`super::region`] for the bound.
 //!
-//! Cost: one or two operations on polygons for each pair of faces whose images overlap, so O(n²) at
-//! worst; what overlaps is found by an index of boxes. About 1,000 faces a second a layer of depth
-//! on one core. Cannot: more than [`MOST_FACES`], which it refuses at once.
+//! Cost: one operation for each face, with all faces before it that its box overlaps, and one for each
+//! pair that crosses or is sorted wrongly: O(n²) at worst. What overlaps is found by an index of boxes.
+//! A smooth closed mesh of 5,900 triangles takes 0.4 s on two cores. One of 20,000 triangles in thin,
+//! crossing rods did not end within a minute, so more than [`MOST_FACES`] are refused at once.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -48,7 +49,7 @@ use crate::scene::Scene;
 use crate::view::Camera;
 
 /// More faces (triangles, of bent ones) in the image than this are refused.
-pub const MOST_FACES: usize = 300_000;
+pub const MOST_FACES: usize = 10_000;
 
 /// Polygons that one piece of parallel work compares with the first one, at least.
 const MIN_LEN: usize = 8;

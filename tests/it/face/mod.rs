@@ -12,10 +12,13 @@ use hiddenline::view::Camera;
 /// An engine without settings.
 type Solve = fn(&Scene, &Camera) -> Painting;
 
-const ENGINES: [(&str, Solve); 5] = [
+const ENGINES: [(&str, Solve); 4] = [
     ("bsp", |scene, camera| bsp::solve(scene, camera).unwrap().0),
     ("octree", |scene, camera| octree::solve(scene, camera).unwrap().0),
     ("octree, all", |scene, camera| octree::Tree::new(scene).unwrap().paint(scene, camera)),
     ("depth sort", |scene, camera| depth_sort::solve(scene, camera).unwrap().0),
-    ("weiler-atherton", |scene, camera| weiler_atherton::solve(scene, camera).unwrap()),
 ];
+
+/// The one that finds regions instead of an order.
+const EXACT: (&str, Solve) =
+    ("weiler-atherton", |scene, camera| weiler_atherton::solve(scene, camera).unwrap());
