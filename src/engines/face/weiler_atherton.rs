@@ -14,6 +14,9 @@
 //!     └──────┘          O = { Q − P }    P is done
 //! ```
 //!
+//! Where a whole polygon is in front of P, it is simply taken before P; only where it crosses P, or
+//! where polygons cover each other in turn, are parts of I solved apart.
+//!
 //! The set S holds the polygons that clip at the moment. One of them that comes up again has been
 //! clipped by all that is in front of it and is drawn without clipping, so nothing goes in circles.
 //!
@@ -86,28 +89,53 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
     // What is left of each polygon: L, and after each step O.
     let mut left: Vec<Rest> =
         images.flats.iter().map(|flat| Rest::new(flat.region.clone())).collect();
+    let mut is_done = vec![false; n];
+    let mut is_begun = vec![false; n];
     let mut near = Vec::new();
-    for &first in &order {
-        let region = std::mem::take(&mut left[first as usize]).region();
-        if region.is_empty() {
-            continue;
+    for &nearest in &order {
+        // What is in front of the last one is put on top of it, to come first.
+        let mut waiting = vec![nearest];
+        while let Some(&first) = waiting.last() {
+            if is_done[first as usize] {
+                waiting.pop();
+                continue;
+            }
+            is_begun[first as usize] = true;
+            let region = std::mem::take(&mut left[first as usize]).region();
+            if region.is_empty() {
+                is_done[first as usize] = true;
+                continue;
+            }
+            index.overlapping(region.bounds(), &mut near);
+            near.retain(|&other| other != first && !is_done[other as usize]);
+            near.sort_by_key(|&other| rank[other as usize]);
+            let goes_first = |&other: &u32| {
+                !is_begun[other as usize]
+                    && images.place(first as usize, other as usize) == Place::InFront
+                    && !left[other as usize].within(&region).is_empty()
+            };
+            let before: Vec<u32> =
+                near.par_iter().with_min_len(MIN_LEN).copied().filter(goes_first).collect();
+            if !before.is_empty() {
+                left[first as usize] = Rest::new(region);
+                waiting.extend(before.iter().rev());
+                continue;
+            }
+            work.clipping[first as usize] = true;
+            let in_front = near
+                .par_iter()
+                .with_min_len(MIN_LEN)
+                .map(|&other| (other, work.in_front(first, &region, other, &left[other as usize])));
+            let mut inside: Vec<(u32, Region)> = in_front.collect();
+            inside.retain(|(_, front)| !front.is_empty());
+            let region = Arc::new(region);
+            for &other in &near {
+                left[other as usize].leave_out(&region);
+            }
+            work.draw(first, region, inside);
+            work.clipping[first as usize] = false;
+            is_done[first as usize] = true;
         }
-        index.overlapping(region.bounds(), &mut near);
-        near.retain(|&other| rank[other as usize] > rank[first as usize]);
-        near.sort_by_key(|&other| rank[other as usize]);
-        work.clipping[first as usize] = true;
-        let in_front = near
-            .par_iter()
-            .with_min_len(MIN_LEN)
-            .map(|&other| (other, work.in_front(first, &region, other, &left[other as usize])));
-        let mut inside: Vec<(u32, Region)> = in_front.collect();
-        inside.retain(|(_, front)| !front.is_empty());
-        let region = Arc::new(region);
-        for &other in &near {
-            left[other as usize].leave_out(&region);
-        }
-        work.draw(first, region, inside);
-        work.clipping[first as usize] = false;
     }
     let faces = images.flats.iter().map(|flat| flat.face).zip(work.drawn);
     Ok(merge::by_face(faces, &images.grid))
