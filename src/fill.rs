@@ -317,8 +317,7 @@ fn layers_by_ink(painting: &Painting, colors: &[[u8; 3]], palette: &Palette) -> 
     for (region, color) in regions.iter().zip(colors) {
         of_ink[nearest(&inks, *color)].push(region);
     }
-    let joined: Vec<Region> =
-        of_ink.into_par_iter().map(|regions| Region::union(regions)).collect();
+    let joined: Vec<Region> = of_ink.into_par_iter().map(Region::union).collect();
     let mut layers = Vec::new();
     for (number, (color, region)) in inks.into_iter().zip(joined).enumerate() {
         let mut fills = Fills::default();

@@ -90,8 +90,9 @@ pub fn solve(scene: &Scene, camera: &Camera, options: &Options) -> Result<Painti
     let diagonal = (high - low).length();
     let leaf = options.leaf.filter(|leaf| *leaf > 0.0).unwrap_or(diagonal / DEFAULT_LEAVES);
     let n = ((high - low) / leaf).ceil().max(DVec2::ONE);
-    if !(n.x * n.y <= MOST_LEAVES) {
-        return Err(FaceError::TooManyLeaves { n: n.x * n.y, most: MOST_LEAVES });
+    let n_leaves = n.x * n.y;
+    if n_leaves.is_nan() || n_leaves > MOST_LEAVES {
+        return Err(FaceError::TooManyLeaves { n: n_leaves, most: MOST_LEAVES });
     }
     let warnock = Warnock { images: &images, low, leaf, subdivision: options.subdivision };
     let all: Vec<u32> = (0..images.flats.len() as u32).collect();
