@@ -151,7 +151,7 @@ impl Item {
 /// Paints one view.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`enum@Error`].
 pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error> {
     let n_piercings = piercing::estimate(scene);
     if n_piercings > MAX_PIERCINGS * scene.triangles().len() as u64 {
