@@ -28,6 +28,10 @@
 //! Both are affine in their last point, so along a segment each changes sign at most once. That
 //! point is a [`Cut`]; the order of two cuts is the sign of a polynomial of degree six.
 //!
+//! Faces that are cut ask [`Planes`] on which side of a plane a [`Corner`] lies. Planes have a positive
+//! side by themselves, whoever looks: that to which the normal of `p`, `q`, `r` points, where `depth`
+//! is negative.
+//!
 //! # Bounds
 //!
 //! A triple product of differences suffers at most eight roundings a term, so its error is below

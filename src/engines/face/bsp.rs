@@ -19,19 +19,31 @@
 //!
 //! Good for: many views of one model, such as a turntable. The walk costs one exact test a node.
 //! Cannot: spare the splits that a view does not need; a scene of large faces that all cross, whose
-//! fragments number n² or more (see [`MAX_FRAGMENTS`]).
+//! fragments number n² or more: 300 triangles at random in a cube make 104 000, in 2.5 s, and a
+//! thousand are refused (see [`MAX_PIERCINGS`]).
 //!
 //! Uses no coherence between views but the tree itself.
 //!
 //! # Size and time
 //!
-//! SIZES
+//! Two threads; the walk paints all fragments of one view. Both grow about as the triangles do:
+//!
+//! | model | triangles | nodes | fragments | built | walked |
+//! |---|---|---|---|---|---|
+//! | bumpy sphere | 9 800 | 22 257 | 21 859 | 0.22 s | 16 ms |
+//! | town | 36 271 | 64 755 | 73 497 | 1.3 s | 43 ms |
+//! | statue | 70 000 | 155 851 | 152 941 | 1.8 s | 112 ms |
+//! | bumpy sphere | 101 760 | 241 065 | 235 403 | 2.6 s | 148 ms |
+//! | 10 000 boxes | 120 000 | 55 183 | 125 711 | 1.0 s | 53 ms |
+//! | turbine blade | 199 034 | 426 995 | 416 896 | 5.3 s | 342 ms |
 
 mod build;
 mod walk;
 
+pub(super) use self::build::check_piercings;
 pub use self::build::{
-    AXES_FROM, MAX_FRAGMENTS, N_CANDIDATES, N_SAMPLES, SPLIT_WEIGHT, TooManyFragments,
+    AXES_FROM, MAX_FRAGMENTS, MAX_PIERCINGS, N_CANDIDATES, N_SAMPLES, SPLIT_WEIGHT,
+    TooManyFragments,
 };
 pub use self::walk::{Order, Walk};
 
@@ -83,8 +95,10 @@ impl Tree {
     /// same for any number of threads.
     ///
     /// # Errors
-    /// When the fragments would be more than [`MAX_FRAGMENTS`].
+    /// When the fragments would be too many, by a guess before anything is built
+    /// ([`MAX_PIERCINGS`]) or in fact ([`MAX_FRAGMENTS`]).
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
+        check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
         let fragments = Fragment::all(scene, &planes);
         let mut counts = Counts::default();

@@ -25,7 +25,7 @@
 //!
 //! In a cycle some member crosses the plane of another, or planes alone would order all of them; it
 //! is split there, and its parts never cross that plane again. So there are finitely many splits;
-//! in fact they are few, and [`MAX_SPLITS`] ends what would take too long.
+//! in fact they are few; [`MAX_SPLITS`] and [`MAX_TESTS`] end what would take too long.
 //!
 //! Source: M. Newell, R. Newell, T. Sancha, "A solution to the hidden surface problem" (1972); lecture
 //! notes on visibility (Slovak), section 3.1, and the tests T1 to T4 of those on depth sort; the same
@@ -40,15 +40,24 @@
 //!
 //! # Time
 //!
-//! SIZES
+//! Two threads, one of which sorts:
+//!
+//! | model | triangles | splits | tests of pairs | time |
+//! |---|---|---|---|---|
+//! | bumpy sphere | 9 800 | 0 | 77 000 | 0.08 s |
+//! | statue | 70 000 | 0 | 457 000 | 0.6 s |
+//! | bumpy sphere | 101 760 | 0 | 713 000 | 1.5 s |
+//! | 10 000 boxes | 120 000 | 0 | 1 127 000 | 1.1 s |
+//! | turbine blade | 199 034 | 0 | 1 304 000 | 2.4 s |
+//! | spacecraft of parts that pierce each other | 20 390 | 62 646 | 28 334 000 | 8.8 s |
 
 mod boxes;
 mod list;
 mod relation;
 
-use super::Counts;
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
+use super::{Counts, piercing};
 use crate::predicates::{PlaneName, Planes, Sign};
 use crate::scene::Scene;
 use crate::view::Camera;
@@ -59,9 +68,16 @@ use thiserror::Error;
 /// Splits for each face, at most, above a few thousand; usual models need far below one.
 pub const MAX_SPLITS: u64 = 64;
 
+/// Pairs of triangles that pierce each other, for each triangle, above which nothing is begun: as many
+/// splits, each of which makes new pairs, would take minutes.
+pub const MAX_PIERCINGS: u64 = 8;
+
+/// Tests of pairs, at most: about a minute.
+pub const MAX_TESTS: u64 = 200_000_000;
+
 /// Pairs of faces with overlapping boxes, at most: a minute or two. An estimate from a sample of faces
 /// is compared with it before anything else.
-pub const MAX_PAIRS: u64 = 400_000_000;
+pub const MAX_PAIRS: u64 = 200_000_000;
 
 /// Faces in the sample for the estimate.
 const N_SAMPLES: usize = 1024;
@@ -75,8 +91,11 @@ pub enum Error {
          use bsp, octree or another engine"
     )]
     TooManyPairs(u64),
+    /// Told before starting.
+    #[error("about {0} pairs of triangles pierce each other, too many to sort; use bsp or warnock")]
+    TooManyPiercings(u64),
     /// Told while sorting.
-    #[error("the faces had to be split {0} times and are still not in order; use bsp")]
+    #[error("the faces had to be split {0} times and are still not in order; use bsp or warnock")]
     TooManySplits(u64),
 }
 
@@ -132,8 +151,12 @@ impl Item {
 /// Paints one view.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`enum@Error`].
 pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error> {
+    let n_piercings = piercing::estimate(scene);
+    if n_piercings > MAX_PIERCINGS * scene.triangles().len() as u64 {
+        return Err(Error::TooManyPiercings(n_piercings));
+    }
     let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
     let easel = Easel::new(scene, camera);
     let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));

@@ -4,12 +4,22 @@
 //!  scene, camera ─► depth_sort, bsp, octree ──► pieces from far to near ──┐
 //!                   warnock, weiler_atherton ─► pieces beside each other ─┴─► Painting
 //! ```
+//!
+//! | engine | cuts faces at | serves | wants |
+//! |---|---|---|---|
+//! | [`depth_sort`] | planes of others, where there is no order without | one view | few piercings |
+//! | [`bsp`] | planes of others | all views | few piercings |
+//! | [`octree`] | octants, then as bsp | all views | large faces that hide much |
+//!
+//! These three order [`fragment`]s exactly, however often they are cut; [`piercing`] tells beforehand
+//! when that would be too often.
 
 pub mod bsp;
 pub mod depth_sort;
 pub mod fragment;
 pub mod octree;
 pub mod painting;
+pub mod piercing;
 
 pub mod occupancy;
 

@@ -25,12 +25,21 @@
 //!
 //! # Size and time
 //!
-//! SIZES
+//! Two threads; painted from near to far, *left* counts the fragments that are not found hidden:
+//!
+//! | model | triangles | fragments | built | all painted | from near | left |
+//! |---|---|---|---|---|---|---|
+//! | street of large faces | 2 014 | 3 741 | 0.2 s | 2 ms | 40 ms | 2 271 |
+//! | bumpy sphere | 9 800 | 23 692 | 0.23 s | 21 ms | 266 ms | 19 147 |
+//! | town | 36 271 | 87 936 | 1.7 s | 74 ms | 0.4 s | 82 510 |
+//! | statue | 70 000 | 166 077 | 1.7 s | 102 ms | 1.4 s | 162 681 |
+//! | 10 000 boxes | 120 000 | 188 174 | 5.1 s | 94 ms | 1.0 s | 185 162 |
+//! | turbine blade | 199 034 | 444 965 | 3.9 s | 398 ms | 1.8 s | 442 395 |
 
 mod hidden;
 
 use super::Counts;
-use super::bsp::{Forest, Order, TooManyFragments};
+use super::bsp::{Forest, Order, TooManyFragments, check_piercings};
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
 use crate::predicates::{PlaneName, Planes, Sign};
@@ -45,6 +54,10 @@ pub const LEAF_CAPACITY: usize = 48;
 
 /// How deep octants are, at most; what meets in one point cannot be parted.
 pub const MAX_DEPTH: u32 = 12;
+
+/// An octant that would be cut into more than this times its fragments is a leaf, however many it
+/// has: fans of long, thin faces would be cut again and again.
+pub const MAX_GROWTH: f64 = 1.5;
 
 /// No octant.
 const NONE: u32 = u32::MAX;
@@ -91,11 +104,14 @@ impl Tree {
     /// threads. O(n log n) on meshes of small triangles.
     ///
     /// # Errors
-    /// When there would be too many fragments.
+    /// When there would be too many fragments, as for [`bsp::Tree::new`](super::bsp::Tree::new).
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
+        check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
         let fragments = Fragment::all(scene, &planes);
         let (low, high) = bounds(&fragments);
+        // A cube, so that flat scenes are not cut in their height.
+        let high = low + (high - low).max_element();
         let mut tasks = vec![Task { link: None, depth: 0, low, high, fragments }];
         let mut octants: Vec<Octant> = Vec::new();
         let mut leaves = Vec::new();
@@ -228,7 +244,7 @@ impl<'a> Leaves<'a> {
 
 enum Parted {
     Leaf(Vec<Fragment>),
-    Octants(DVec3, [Option<Task>; 8]),
+    Octants(DVec3, Box<[Option<Task>; 8]>),
 }
 
 /// Cuts fragments at the three planes through the center of an octant.
@@ -239,17 +255,24 @@ fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
     }
     let across = [0u8, 1, 2]
         .map(|axis| planes.plane(PlaneName::Across { axis, at: center[usize::from(axis)] }));
+    let n = task.fragments.len();
+    let mut of_parts = Counts::default();
     let mut parts: [Vec<Fragment>; 8] = Default::default();
-    parts[0] = task.fragments;
+    parts[0] = task.fragments.clone();
     for (axis, plane) in across.iter().enumerate() {
         for k in 0..1 << axis {
             for fragment in std::mem::take(&mut parts[k]) {
-                let (front, back) = fragment.parted(planes, plane, counts);
+                let (front, back) = fragment.parted(planes, plane, &mut of_parts);
                 parts[k | 1 << axis].extend(front);
                 parts[k].extend(back);
             }
         }
     }
+    counts.tests += of_parts.tests;
+    if (n as u64 + of_parts.splits) as f64 > MAX_GROWTH * n as f64 {
+        return Parted::Leaf(task.fragments);
+    }
+    counts.splits += of_parts.splits;
     let mut k = 0;
     let below = parts.map(|fragments| {
         let is_above = [0, 1, 2].map(|axis| k >> axis & 1 == 1);
@@ -263,7 +286,7 @@ fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
         let depth = task.depth + 1;
         (!fragments.is_empty()).then_some(Task { link: None, depth, low, high, fragments })
     });
-    Parted::Octants(center, below)
+    Parted::Octants(center, Box::new(below))
 }
 
 /// A box around fragments, roundings included.

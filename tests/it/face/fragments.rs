@@ -43,7 +43,7 @@ fn areas_of_fragments_sum_to_those_of_their_triangles() {
             }
         }
     }
-    assert!(n_cut > 1000, "hardly anything is cut: {n_cut}");
+    assert!(n_cut > 400, "hardly anything is cut: {n_cut}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The face engines: what they paint, against exact rays.
 
+mod corners;
 mod fragments;
 mod judge;
 mod models;

@@ -3,8 +3,11 @@
 use super::judge::World;
 use super::{ENGINES, EXACT};
 use crate::image::model;
+use hiddenline::engines::face::{bsp, depth_sort, piercing};
 use hiddenline::framing::{Framing, NamedView, Standpoint};
+use hiddenline::read::read_file;
 use hiddenline::scene::Scene;
+use std::path::Path;
 
 const MODELS: [&str; 14] = [
     "benchy_wheel.stl",
@@ -41,4 +44,26 @@ fn paintings_of_models_are_what_exact_rays_meet() {
             }
         }
     }
+}
+
+#[test]
+fn no_model_is_refused() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models"));
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        eprintln!("no models in {}: skipped", folder.display());
+        return;
+    };
+    let mut n_models = 0;
+    for path in entries.map(|entry| entry.unwrap().path()) {
+        let is_model = path.extension().is_some_and(|kind| kind == "obj" || kind == "stl");
+        if !is_model {
+            continue;
+        }
+        let scene = Scene::new(read_file(&path, None).unwrap().mesh);
+        let (n, found) = (scene.triangles().len() as u64, piercing::estimate(&scene));
+        eprintln!("{}: {n} triangles, about {found} pairs pierce", path.display());
+        assert!(found <= depth_sort::MAX_PIERCINGS.min(bsp::MAX_PIERCINGS) * n);
+        n_models += 1;
+    }
+    assert!(n_models > 20);
 }

@@ -7,6 +7,7 @@ use crate::oracle::Sight;
 use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
+use hiddenline::engines::face::{bsp, depth_sort, octree};
 use hiddenline::scene::Scene;
 
 /// Judges all engines on one scene; the number of points judged by each.
@@ -50,7 +51,7 @@ fn bars_that_overlap_in_turn_are_split() {
     // From above there is no order without a split: nine bars' overlaps are one cycle.
     let scene = bars().seen_by("bars", views()[0]);
     let (built, camera) = (Scene::new(mesh(&scene)), camera(&scene));
-    let (painting, counts) = hiddenline::engines::face::depth_sort::solve(&built, &camera).unwrap();
+    let (painting, counts) = depth_sort::solve(&built, &camera).unwrap();
     assert!(counts.splits > 0);
     assert_eq!(painting.len() as u64, 6 + counts.splits);
 }
@@ -129,4 +130,20 @@ fn the_painting_of_crossing_triangles_is_what_exact_rays_meet() {
         };
         judge(&model.seen_by(format!("crossing, seed {seed}"), sight), 17);
     }
+}
+
+#[test]
+fn heaps_of_faces_that_pierce_each_other_are_refused_before_the_start() {
+    let mut rng = crate::scenes::Rng(1);
+    let mut model = Model::default();
+    for _ in 0..1500 {
+        let corners = [0; 3].map(|_| rng.point(-400, 400));
+        model.face(&corners);
+    }
+    let scene = model.seen_by("heap", views()[0]);
+    let (built, camera) = (Scene::new(mesh(&scene)), camera(&scene));
+    assert!(bsp::solve(&built, &camera).is_err());
+    assert!(octree::solve(&built, &camera).is_err());
+    let refused = depth_sort::solve(&built, &camera).unwrap_err();
+    assert!(matches!(refused, depth_sort::Error::TooManyPiercings(_)), "{refused}");
 }

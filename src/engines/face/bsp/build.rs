@@ -4,15 +4,14 @@
 //! thread. Nothing depends on the number of threads, and nothing recurs.
 
 use super::{Forest, NONE, Node};
-use crate::engines::face::Counts;
 use crate::engines::face::fragment::{Fragment, Position};
+use crate::engines::face::{Counts, piercing};
 use crate::predicates::{PlaneName, Planes};
 use crate::scene::Scene;
 use rayon::prelude::*;
 use thiserror::Error;
 
-/// Faces whose planes are tried for each node. More make smaller trees, more slowly: on meshes 16
-/// saves a few per cent of fragments over 8 and doubles the time.
+/// Faces whose planes are tried for each node. More make smaller trees, more slowly.
 pub const N_CANDIDATES: usize = 8;
 
 /// Fragments that a candidate is tried on. With fewer, bad planes pass for good ones.
@@ -26,8 +25,12 @@ pub const SPLIT_WEIGHT: i64 = 6;
 /// to single faces sooner without; larger ones of a convex body would cost the square of their size.
 pub const AXES_FROM: usize = 24;
 
-/// No tree gets more fragments than this: some gigabytes.
-pub const MAX_FRAGMENTS: usize = 20_000_000;
+/// No tree gets more fragments than this: some two gigabytes.
+pub const MAX_FRAGMENTS: usize = 4_000_000;
+
+/// Pairs of triangles that pierce each other, for each triangle, above which no tree is begun: a
+/// thousand large faces in a heap, which would take a minute.
+pub const MAX_PIERCINGS: u64 = 32;
 
 /// Sets of at most this many fragments are left to one thread.
 const ALONE: usize = 512;
@@ -35,10 +38,19 @@ const ALONE: usize = 512;
 /// Faces cross too often for a tree of planes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "the faces of the model cut each other into more than {MAX_FRAGMENTS} fragments; \
-     use an engine that does not cut all of them, such as depth-sort"
+    "the faces of the model pierce each other too often and would be cut into millions of fragments; \
+     use warnock"
 )]
 pub struct TooManyFragments;
+
+/// Whether a tree may be begun, guessed from a sample of the faces.
+pub(in crate::engines::face) fn check_piercings(scene: &Scene) -> Result<(), TooManyFragments> {
+    let n_triangles = scene.triangles().len() as u64;
+    if piercing::estimate(scene) > MAX_PIERCINGS * n_triangles {
+        return Err(TooManyFragments);
+    }
+    Ok(())
+}
 
 /// Where the number of a node goes.
 #[derive(Debug, Clone, Copy)]

@@ -5,10 +5,11 @@
 
 use super::boxes::Boxes;
 use super::relation::{is_across, may_precede};
-use super::{Error, Item, MAX_SPLITS};
+use super::{Error, Item, MAX_SPLITS, MAX_TESTS};
 use crate::engines::face::Counts;
 use crate::engines::face::fragment::Easel;
 use crate::predicates::{PlaneName, Planes};
+use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -59,6 +60,8 @@ pub(super) struct List<'a> {
     /// What is to begin the list next.
     heap: BinaryHeap<Farthest>,
     stack: Vec<Entry>,
+    /// What has left the stack unpainted; pairs that are settled stay so.
+    paused: FxHashMap<u32, Entry>,
 }
 
 impl<'a> List<'a> {
@@ -75,6 +78,7 @@ impl<'a> List<'a> {
             n_parts: vec![1; n],
             heap: (0..).zip(&items).map(|(number, item)| Farthest(item.far, number)).collect(),
             stack: Vec::new(),
+            paused: FxHashMap::default(),
             items,
         }
     }
@@ -141,7 +145,7 @@ impl<'a> List<'a> {
                         None => self.pass(),
                     },
                 }
-                if counts.splits > max_splits {
+                if counts.splits > max_splits || counts.tests > MAX_TESTS {
                     return Err(Error::TooManySplits(counts.splits));
                 }
             }
@@ -169,6 +173,11 @@ impl<'a> List<'a> {
 
     /// Moves an item to the front of the list.
     fn begin(&mut self, number: u32) {
+        self.states[number as usize] = State::Marked(self.stack.len());
+        if let Some(entry) = self.paused.remove(&number) {
+            self.stack.push(entry);
+            return;
+        }
         let mut others = Vec::new();
         let item = &self.items[number as usize];
         self.boxes.for_each(&self.items, item, |other| {
@@ -178,7 +187,6 @@ impl<'a> List<'a> {
         });
         let far = |number: &u32| self.items[*number as usize].far;
         others.sort_unstable_by(|a, b| far(b).total_cmp(&far(a)).then(a.cmp(b)));
-        self.states[number as usize] = State::Marked(self.stack.len());
         self.stack.push(Entry { item: number, others, next: 0 });
     }
 
@@ -213,6 +221,9 @@ impl<'a> List<'a> {
                 let far = self.items[entry.item as usize].far;
                 // One that began the list may be among them.
                 self.heap.push(Farthest(far, entry.item));
+                if entry.item != number {
+                    self.paused.insert(entry.item, entry);
+                }
             }
         }
         let item = &self.items[number as usize];
