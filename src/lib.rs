@@ -12,12 +12,12 @@
 //!                  │                                       │
 //!   view ──────► classify ─► engines::edge ─► visibility   │
 //!   framing    faces, edges  what is hidden   spans of qi  │
-//!                                                  │       │
-//!                                                chain     │
-//!                                                  ▼       ▼
-//!                                               strokes: polylines in the image
-//!                                                  │
-//!                                                page: placement on paper
+//!      │                                           │       │
+//!      ├───────► engines::face                   chain     │
+//!      │         regions of faces                  ▼       ▼
+//!      ▼               │                        strokes: polylines in the image
+//!    light ─────────► fill                         │
+//!                 colored areas ──────────────► page: placement on paper
 //!                                                  ▼
 //!  line SVG ─► line_svg ──────────────────────► plot: millimetres, a layer a pen
 //!                                                  │
@@ -67,6 +67,8 @@ pub mod scene;
 
 pub mod view;
 
+pub mod light;
+
 pub mod classify;
 
 pub mod framing;
@@ -84,6 +86,8 @@ pub mod chain;
 pub mod draw;
 
 pub mod plot;
+
+pub mod fill;
 
 pub mod line_svg;
 

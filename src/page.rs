@@ -12,6 +12,7 @@
 //!
 //! Nothing is written outside the margins: lines that would leave are cropped there.
 
+mod areas;
 mod crop;
 mod dash;
 mod paper;
@@ -21,7 +22,8 @@ use glam::{DAffine2, DMat2, DVec2};
 use thiserror::Error;
 
 use crate::draw::HiddenLines;
-use crate::plot::Plot;
+use crate::fill::Filled;
+use crate::plot::{Layer, Pen, Plot};
 use crate::strokes::Drawing;
 use crate::view::{Camera, Projection};
 
@@ -220,6 +222,13 @@ impl Page {
         self.page_from_image.matrix2.x_axis.x
     }
 
+    /// What lies between the margins.
+    fn window(&self) -> crop::Window {
+        let margin = DVec2::splat(self.margin_mm);
+        let sheet = DVec2::new(self.paper.width_mm, self.paper.height_mm);
+        crop::Window { low: margin, high: sheet - margin, slack: CROP_SLACK_MM }
+    }
+
     /// Maps strokes onto the page, crops them to the margins and gives each to its pen.
     ///
     /// A visible stroke is drawn by the pen of the outline if it is part of that, or else by the pen
@@ -227,9 +236,7 @@ impl Page {
     /// by the one of visible or hidden strokes: unless there are rules, visible ones are
     /// layer 1 and hidden ones, if drawn, layer 2. Strokes keep their order. O(points + dashes).
     pub fn plot(&self, drawing: &Drawing, options: PlotOptions) -> PlacedPlot {
-        let margin = DVec2::splat(self.margin_mm);
-        let sheet = DVec2::new(self.paper.width_mm, self.paper.height_mm);
-        let window = crop::Window { low: margin, high: sheet - margin, slack: CROP_SLACK_MM };
+        let window = self.window();
         let mut holder = pens::Holder::new(&options);
         let mut cropped = false;
         let mut on_page = Vec::new();
@@ -257,6 +264,37 @@ impl Page {
             layers: holder.into_layers(),
         };
         PlacedPlot { plot, cropped }
+    }
+}
+
+impl PlacedPlot {
+    /// Lays areas below the lines: a layer for each of the fill's, numbered before them.
+    ///
+    /// Each area is outlined in its own color by a line `seam_mm` wide, for which see
+    /// [`Fills::seam_mm`](crate::plot::Fills::seam_mm); it may reach half of that into the margin.
+    #[must_use]
+    pub fn with_fills(mut self, page: &Page, filled: &Filled, seam_mm: f64) -> Self {
+        let window = page.window();
+        let mut layers = Vec::with_capacity(filled.layers.len() + self.plot.layers.len());
+        for layer in &filled.layers {
+            let (fills, cropped) =
+                areas::placed(&layer.fills, &page.page_from_image, &window, seam_mm);
+            self.cropped |= cropped;
+            let [r, g, b] = layer.color;
+            layers.push(Layer {
+                number: layers.len() as u32 + 1,
+                name: layer.name.clone(),
+                pen: Pen { width_mm: seam_mm, color: format!("#{r:02x}{g:02x}{b:02x}") },
+                lines: Default::default(),
+                fills,
+            });
+        }
+        let n_fills = layers.len() as u32;
+        for layer in self.plot.layers {
+            layers.push(Layer { number: n_fills + layer.number, ..layer });
+        }
+        self.plot.layers = layers;
+        self
     }
 }
 

@@ -1,4 +1,4 @@
-//! A finished page: polylines in millimetres, one layer a pen. What every writer writes.
+//! A finished page: polylines and filled areas in millimetres, one layer a pen. What writers write.
 //!
 //! Page coordinates have their origin at the top left corner of the paper, x to the right and y
 //! *downwards*, in millimetres.
@@ -31,6 +31,8 @@ pub struct Layer {
     pub pen: Pen,
     /// Polylines in page millimetres; a closed one ends at its first point.
     pub lines: Polylines,
+    /// Areas in page millimetres, painted in their order and before the lines. Plotters have none.
+    pub fills: Fills,
 }
 
 /// What draws a layer.
@@ -87,6 +89,86 @@ impl Polylines {
             let points = &self.points[*start..end as usize];
             *start = end as usize;
             Some(points)
+        })
+    }
+}
+
+/// Filled areas in one flat array: each with a color and closed rings, filled where an odd number of
+/// them is around.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Fills {
+    points: Vec<DVec2>,
+    ring_ends: Vec<u32>,
+    areas: Vec<([u8; 3], u32)>,
+    /// Each area is also outlined in its own color with a line of this width, so that no background
+    /// shines through between neighbors where a screen or printer smooths their borders. 0 leaves
+    /// areas as they are, as machines that cut want it.
+    pub seam_mm: f64,
+}
+
+/// One filled area.
+#[derive(Debug, Clone, Copy)]
+pub struct Area<'a> {
+    /// Its color.
+    pub color: [u8; 3],
+    fills: &'a Fills,
+    rings: (u32, u32),
+}
+
+impl Fills {
+    /// Adds an area over all others. Rings of fewer than three points are left out; the last point of
+    /// a ring is joined to the first.
+    pub fn push<R>(&mut self, color: [u8; 3], rings: impl IntoIterator<Item = R>)
+    where
+        R: IntoIterator<Item = DVec2>,
+    {
+        let n_rings = self.ring_ends.len();
+        for ring in rings {
+            let start = self.points.len();
+            self.points.extend(ring);
+            if self.points.len() < start + 3 {
+                self.points.truncate(start);
+            } else {
+                self.ring_ends.push(self.points.len() as u32);
+            }
+        }
+        if self.ring_ends.len() > n_rings {
+            self.areas.push((color, self.ring_ends.len() as u32));
+        }
+    }
+
+    /// Number of areas.
+    pub fn len(&self) -> usize {
+        self.areas.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.areas.is_empty()
+    }
+
+    /// Number of points of all areas.
+    pub fn n_points(&self) -> usize {
+        self.points.len()
+    }
+
+    /// The areas in the order of painting.
+    pub fn iter(&self) -> impl Iterator<Item = Area<'_>> {
+        self.areas.iter().scan(0, |start, &(color, end)| {
+            let rings = (*start, end);
+            *start = end;
+            Some(Area { color, fills: self, rings })
+        })
+    }
+}
+
+impl<'a> Area<'a> {
+    /// Its rings, without a last point that repeats the first.
+    pub fn rings(&self) -> impl Iterator<Item = &'a [DVec2]> + use<'a> {
+        let fills = self.fills;
+        (self.rings.0 as usize..self.rings.1 as usize).map(move |ring| {
+            let start = ring.checked_sub(1).map_or(0, |before| fills.ring_ends[before] as usize);
+            &fills.points[start..fills.ring_ends[ring] as usize]
         })
     }
 }

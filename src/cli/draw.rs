@@ -136,7 +136,7 @@ fn plot_options(job: &Job) -> PlotOptions {
 }
 
 /// The names of the models, without folders.
-fn title(files: &ModelFiles) -> String {
+pub(super) fn title(files: &ModelFiles) -> String {
     let name = |path: &Path| {
         if path.as_os_str() == "-" {
             return "standard input".to_owned();

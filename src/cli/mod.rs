@@ -3,6 +3,7 @@
 mod args;
 mod config;
 mod draw;
+mod fill;
 mod machine;
 mod messages;
 mod optimize;
@@ -24,6 +25,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use self::args::DrawArgs;
+use self::fill::FillArgs;
 use self::optimize::OptimizeArgs;
 use self::preview::PreviewArgs;
 use self::surface::SurfaceArgs;
@@ -52,6 +54,8 @@ enum Command {
     Draw(Box<DrawArgs>),
     /// Draw a surface z = f(x, y) by its grid lines, the hidden parts removed
     Surface(Box<SurfaceArgs>),
+    /// Fill the visible faces of models with color, for print
+    Fill(Box<FillArgs>),
     /// Make a shaded picture of models
     Preview(Box<PreviewArgs>),
     /// Join and order the strokes of any line SVG for a plotter
@@ -123,6 +127,7 @@ pub(crate) fn run() -> ExitCode {
     let result = match typed.command {
         Command::Draw(args) => started("draw", args.job(), draw::run),
         Command::Surface(args) => started("surface", args.job(), surface::run),
+        Command::Fill(args) => started("fill", args.job(), fill::run),
         Command::Preview(args) => started("preview", args.job(), preview::run),
         Command::Optimize(args) => started("optimize", args.job(), optimize::run),
         Command::Config { command: ConfigCommand::Show { preset } } => {

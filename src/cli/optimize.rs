@@ -106,8 +106,13 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
             lines.push(line.iter().copied());
         }
         let name = rule.drawn.name().into_owned();
-        plot.layers =
-            vec![hiddenline::plot::Layer { number: rule.number, name, pen: rule.pen, lines }];
+        plot.layers = vec![hiddenline::plot::Layer {
+            number: rule.number,
+            name,
+            pen: rule.pen,
+            lines,
+            fills: Default::default(),
+        }];
     }
     if plot.title.is_empty() {
         plot.title = name.clone();

@@ -66,7 +66,8 @@ impl Run<'_> {
         }
         self.stats.seconds = seconds;
         if is_json {
-            return self.write(&page.paper.description(), &placed.plot, None, |out| {
+            let path = self.output.path.as_deref();
+            return self.write(path, &page.paper.description(), &placed.plot, None, |out| {
                 Ok(json::write(drawing, camera, page.page_from_image, out)?)
             });
         }
@@ -75,7 +76,19 @@ impl Run<'_> {
 
     /// Joins, orders and writes a page, and ends the run.
     pub(super) fn plot(
+        self,
+        paper: &str,
+        plot: Plot,
+        usual: &Options,
+    ) -> Result<(), Box<dyn Error>> {
+        let path = self.output.path.as_deref();
+        self.plot_to(path, paper, plot, usual)
+    }
+
+    /// The same to another file than the output's.
+    pub(super) fn plot_to(
         mut self,
+        path: Option<&Path>,
         paper: &str,
         plot: Plot,
         usual: &Options,
@@ -95,27 +108,32 @@ impl Run<'_> {
             _ => None,
         };
         let written = &plot;
-        self.write(paper, written, Some(done), |out| match (output.format, &output.target.device) {
-            (Format::Hpgl, _) => match &profile {
-                Some(profile) => Ok(hpgl::write(written, profile, out)?),
-                None => Ok(()),
-            },
-            (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(written, profile, out)?),
-            (Format::Pdf, _) => Ok(pdf::write(written, out)?),
-            (Format::Dxf, _) => Ok(dxf::write(written, out)?),
-            (Format::Png, _) => png::write_marked(written, output.resolution, output.marks, out),
-            _ => Ok(svg::write(written, output.svg_element, out)?),
+        self.write(path, paper, written, Some(done), |out| {
+            match (output.format, &output.target.device) {
+                (Format::Hpgl, _) => match &profile {
+                    Some(profile) => Ok(hpgl::write(written, profile, out)?),
+                    None => Ok(()),
+                },
+                (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(written, profile, out)?),
+                (Format::Pdf, _) => Ok(pdf::write(written, out)?),
+                (Format::Dxf, _) => Ok(dxf::write(written, out)?),
+                (Format::Png, _) => {
+                    png::write_marked(written, output.resolution, output.marks, out)
+                }
+                _ => Ok(svg::write(written, output.svg_element, out)?),
+            }
         })
     }
 
     fn write(
         mut self,
+        path: Option<&Path>,
         paper: &str,
         plot: &Plot,
         done: Option<Done>,
         write: impl FnOnce(&mut dyn Write) -> Result<(), PngError>,
     ) -> Result<(), Box<dyn Error>> {
-        if plot.layers.iter().all(|layer| layer.lines.is_empty()) {
+        if plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty()) {
             self.notes.warnings.push("the drawing is empty: nothing is in view".into());
         }
         self.notes.warnings.extend(alike_pens(plot));
@@ -129,7 +147,7 @@ impl Run<'_> {
         self.progress.stage("writing");
         let mut write_seconds = 0.0;
         timed(&mut write_seconds, || -> Result<(), Box<dyn Error>> {
-            match &self.output.path {
+            match path {
                 None => Ok(output::write_to_stdout(write)?),
                 Some(path) => output::write_to_file(path, write)
                     .map_err(|error| format!("cannot write {}: {error}", path.display()).into()),
@@ -143,7 +161,7 @@ impl Run<'_> {
         if !output.quiet {
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
             messages::plain(&self.notes.summary);
-            let name = output.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
+            let name = path.map_or("<stdout>".into(), Path::to_string_lossy);
             messages::plain(format_args!("{name}  {paper}{}", described(plot, done.as_ref())));
             if output.verbose {
                 tell_more(output, stats, done.as_ref());
@@ -169,6 +187,9 @@ fn described(plot: &Plot, done: Option<&Done>) -> String {
         .layers
         .iter()
         .map(|layer| {
+            if !layer.fills.is_empty() {
+                return format!("  {} {} areas", layer.name, layer.fills.len());
+            }
             let meters = layer.lines.length_mm() / 1000.0;
             format!("  {} {} strokes {meters:.1} m", layer.name, layer.lines.len())
         })

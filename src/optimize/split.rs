@@ -32,7 +32,8 @@ pub fn split_by_distance(plot: &Plot, distance_mm: f64) -> Plot {
                 1 => layer.name.clone(),
                 _ => format!("{}-part-{}", layer.name, i + 1),
             };
-            layers.push(Layer { number: 0, name, pen: layer.pen.clone(), lines });
+            let fills = if i == 0 { layer.fills.clone() } else { Default::default() };
+            layers.push(Layer { number: 0, name, pen: layer.pen.clone(), lines, fills });
         }
     }
     // Only a split moves the numbers, so that whole drawings keep the pens they were given.

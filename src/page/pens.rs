@@ -3,7 +3,7 @@
 use crate::draw::HiddenLines;
 use std::borrow::Cow;
 
-use crate::plot::{Layer, Pen, Polylines};
+use crate::plot::{Fills, Layer, Pen, Polylines};
 use crate::strokes::{Stroke, StrokeKind};
 
 use super::PlotOptions;
@@ -108,7 +108,13 @@ impl Holder {
 
     fn add(&mut self, drawn: Drawn, number: u32, pen: Pen, fixed: bool) -> usize {
         let name = drawn.name().into_owned();
-        self.layers.push(Layer { number, name, pen, lines: Polylines::default() });
+        self.layers.push(Layer {
+            number,
+            name,
+            pen,
+            lines: Polylines::default(),
+            fills: Fills::default(),
+        });
         self.fixed.push(fixed);
         self.layers.len() - 1
     }

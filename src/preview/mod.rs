@@ -22,6 +22,7 @@ use self::shade::Shader;
 use crate::engines::image::edge::center;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
 use crate::engines::image::{Engine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip};
+use crate::light::{DEFAULT_PAINT, to_bytes};
 use crate::scene::Scene;
 use crate::stats::{Seconds, timed};
 use crate::strokes::Drawing;
@@ -107,7 +108,7 @@ impl Default for Options {
             show: Show::default(),
             smooth_deg: None,
             light: None,
-            color: [0xd8, 0xd4, 0xc8],
+            color: DEFAULT_PAINT,
             background: None,
             fit_fov: false,
             stroke_px: 1.5,
@@ -253,10 +254,4 @@ fn shares(fine: &Raster, number: usize, opacity: f64, shader: &Shader) -> Vec<[u
         }
     });
     colors
-}
-
-/// A color with parts from 0 to 1 as bytes.
-fn to_bytes(color: DVec3) -> [u8; 3] {
-    // The cast cuts off, and keeps within a byte what is not.
-    (color * 255.0 + 0.5).to_array().map(|part| part as u8)
 }

@@ -1,30 +1,16 @@
 //! The color of a triangle at a pixel.
 //!
-//! ```text
-//!            light         tone = ambient + (1 − ambient) · max(0, n · l)
-//!          ╲   ↑ n         n is turned to the viewer, so both sides of a sheet are lit;
-//!         l ╲  │           flat: the triangle's own normal; smooth: the mean of those
-//!            ●─┴────       around each corner, mixed over the triangle
-//! ```
-//!
-//! Lambert's law; mixing normals is Phong's (1975).
+//! The tone is that of [`crate::light`], by a normal that is flat, the triangle's own, or smooth: the
+//! mean of those around each corner, mixed over the triangle (Phong 1975).
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::{Options, Show};
 use crate::engines::image::{NOTHING, PixelMap, Raster};
+use crate::light::{FARTHEST, Light, number_color, parts};
 use crate::scene::Scene;
 use crate::view::{Camera, Frame, Projection};
-
-/// The tone of what is turned away from the light.
-const AMBIENT: f64 = 0.25;
-
-/// The default light: to the left of the viewer, above, and behind, along right, up and forward.
-const LEFT_SHOULDER: DVec3 = DVec3::new(-0.45, 0.65, -0.85);
-
-/// The color of the farthest point in a picture of depth.
-const FARTHEST: f64 = 0.1;
 
 pub(super) struct Shader<'a> {
     scene: &'a Scene,
@@ -33,8 +19,7 @@ pub(super) struct Shader<'a> {
     frame: Frame,
     map: PixelMap,
     show: Show,
-    /// Towards the light, of length one.
-    light: DVec3,
+    light: Light,
     color: DVec3,
     background: DVec3,
     /// For each corner of each triangle; empty for flat shading.
@@ -52,9 +37,6 @@ impl<'a> Shader<'a> {
         options: &Options,
     ) -> Self {
         let frame = camera.frame();
-        let light = options.light.and_then(DVec3::try_normalize);
-        let light = light.unwrap_or_else(|| left_shoulder(&frame));
-        let parts = |color: [u8; 3]| DVec3::from(color.map(f64::from)) / 255.0;
         let normals = match options.smooth_deg {
             Some(angle) if matches!(options.show, Show::Shaded | Show::Tone | Show::Normals) => {
                 smooth_normals(scene, angle)
@@ -80,7 +62,7 @@ impl<'a> Shader<'a> {
             frame,
             map: *map,
             show: options.show,
-            light,
+            light: Light::new(options.light, camera),
             color: parts(options.color),
             background: parts(options.background.unwrap_or(options.show.background())),
             normals,
@@ -107,7 +89,7 @@ impl<'a> Shader<'a> {
         match self.show {
             Show::Shaded => self.color * self.tone(number, pixel),
             Show::Tone => DVec3::splat(self.tone(number, pixel)),
-            Show::Faces => face_color(self.scene.triangle_faces()[number as usize]),
+            Show::Faces => number_color(self.scene.triangle_faces()[number as usize]),
             Show::Normals => {
                 let n = self.normal(number, pixel);
                 let Frame { right, upward, forward } = self.frame;
@@ -125,7 +107,7 @@ impl<'a> Shader<'a> {
     }
 
     fn tone(&self, triangle: u32, pixel: DVec2) -> f64 {
-        AMBIENT + (1.0 - AMBIENT) * self.normal(triangle, pixel).dot(self.light).max(0.0)
+        self.light.tone(self.normal(triangle, pixel))
     }
 
     /// The normal that is shaded, of length one, on the side of the viewer.
@@ -165,12 +147,6 @@ impl<'a> Shader<'a> {
             Projection::Orthographic => (self.camera.eye() + aside, self.frame.forward),
         }
     }
-}
-
-/// The default light for a camera.
-fn left_shoulder(frame: &Frame) -> DVec3 {
-    let DVec3 { x, y, z } = LEFT_SHOULDER;
-    (frame.right * x + frame.upward * y + frame.forward * z).normalize_or_zero()
 }
 
 fn positions(scene: &Scene, triangle: u32) -> [DVec3; 3] {
@@ -217,14 +193,4 @@ fn smooth_normals(scene: &Scene, angle_deg: f64) -> Vec<[DVec3; 3]> {
         .zip(&flat)
         .map(|(triangle, &own)| triangle.map(|vertex| mean(own, vertex)))
         .collect()
-}
-
-/// A color for a face; no two of the first 16 million have the same, and none is black.
-pub(super) fn face_color(face: u32) -> DVec3 {
-    /// Odd, so that multiples are all different modulo 2²⁴, and near the golden section, so that
-    /// neighbors differ.
-    const STEP: u32 = 0x9e_3779;
-    let number = face.wrapping_add(1).wrapping_mul(STEP);
-    let part = |shift: u32| f64::from(number >> shift & 0xff) / 255.0;
-    DVec3::new(part(16), part(8), part(0))
 }

@@ -14,6 +14,7 @@
 //! counts a header claims.
 
 mod error;
+mod materials;
 mod obj;
 mod obj_filter;
 mod off;
@@ -26,6 +27,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use error::{Fault, ReadError};
+pub use materials::{MaterialColors, material_colors};
 pub use warning::{Notice, Warning};
 
 use crate::mesh::{Mesh, PolygonSoup, Repairs};

@@ -8,6 +8,7 @@ use std::io;
 use glam::{DVec2, dvec2};
 
 use super::decimal::Decimal;
+use super::{Format, only_lines};
 use crate::plot::{Layer, Plot};
 
 /// Decimals of a millimetre.
@@ -18,6 +19,7 @@ const DECIMALS: u32 = 4;
 /// # Errors
 /// Those of `out`.
 pub fn write(plot: &Plot, out: &mut dyn io::Write) -> io::Result<()> {
+    only_lines(plot, Format::Dxf)?;
     let mut out = Groups(out);
     out.text(0, "SECTION")?;
     out.text(2, "HEADER")?;

@@ -10,6 +10,7 @@ use std::io;
 use serde::Deserialize;
 
 use super::decimal::Decimal;
+use super::{Format, only_lines};
 use crate::optimize::estimate::Motion;
 use crate::plot::{Layer, Plot};
 
@@ -206,6 +207,7 @@ fn placeholders(text: &str) -> impl Iterator<Item = (&str, &str, &str)> {
 /// # Errors
 /// Those of `out`.
 pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Result<()> {
+    only_lines(plot, Format::Gcode)?;
     let mut writer = Writer { plot, profile, layer: None, text: String::new() };
     writer.expand(&profile.start, 0.0, 0.0);
     let mut first = true;

@@ -10,6 +10,7 @@ use glam::{DVec2, dvec2};
 use serde::Deserialize;
 
 use super::clip::clip;
+use super::{Format, only_lines};
 use crate::plot::Plot;
 
 /// Points in one `PD` instruction.
@@ -209,6 +210,7 @@ fn fits(plot: &Plot, paper: &Paper, sideways: bool) -> bool {
 /// # Errors
 /// Those of `out`.
 pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Result<()> {
+    only_lines(plot, Format::Hpgl)?;
     let Profile { machine, paper } = profile;
     write!(out, "IN;DF;")?;
     if let Some(ps) = paper.ps {

@@ -10,7 +10,12 @@ pub mod pdf;
 pub mod png;
 pub mod svg;
 
+use std::io;
 use std::path::Path;
+
+use thiserror::Error;
+
+use crate::plot::Plot;
 
 /// What can be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,8 +74,29 @@ impl Format {
         Self::ALL.into_iter().find(|format| format.extensions().iter().any(&is_known))
     }
 
+    /// Whether the format has filled areas.
+    pub fn has_fills(self) -> bool {
+        matches!(self, Self::Svg | Self::Pdf | Self::Png)
+    }
+
     /// Whether the format is bytes rather than text.
     pub fn is_binary(self) -> bool {
         matches!(self, Self::Png | Self::Pdf)
     }
+}
+
+/// A page has filled areas, and the format has none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error(
+    "{} has lines only, no filled areas; write svg, pdf or png, or leave out the areas (draw)",
+    .0.name()
+)]
+pub struct NoFills(pub Format);
+
+/// Refuses a page with filled areas.
+fn only_lines(plot: &Plot, format: Format) -> io::Result<()> {
+    if plot.layers.iter().all(|layer| layer.fills.is_empty()) {
+        return Ok(());
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidInput, NoFills(format)))
 }

@@ -1,14 +1,15 @@
-//! PDF for print: one page of the sheet's size, strokes as lines of the pens' widths.
+//! PDF for print: one page of the sheet's size, areas filled, strokes as lines of the pens' widths.
 //!
 //! Written with `pdf-writer`, whose numbers are `f32`: a hundredth of a micrometer on a large
 //! sheet. Coordinates are rounded to micrometers before.
 
 use std::io;
 
+use glam::DVec2;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Finish, Pdf, Rect, Ref, TextStr};
 
-use crate::plot::Plot;
+use crate::plot::{Fills, Plot};
 
 /// Points in a millimetre.
 const POINTS_PER_MM: f32 = 72.0 / 25.4;
@@ -42,6 +43,7 @@ fn content(plot: &Plot) -> Content {
     content.transform([POINTS_PER_MM, 0.0, 0.0, -POINTS_PER_MM, 0.0, height]);
     content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
     for layer in &plot.layers {
+        fill(&layer.fills, &mut content);
         let [r, g, b] = [1, 3, 5].map(|i| {
             let hex = layer.pen.color.get(i..i + 2);
             let value = hex.and_then(|hex| u8::from_str_radix(hex, 16).ok()).unwrap_or(0);
@@ -52,7 +54,7 @@ fn content(plot: &Plot) -> Content {
         for line in layer.lines.iter().filter(|line| line.iter().all(|p| p.is_finite())) {
             let closed = line.len() > 3 && line.first() == line.last();
             for (i, p) in line[..line.len() - usize::from(closed)].iter().enumerate() {
-                let [x, y] = [p.x, p.y].map(|v| ((v * 1e3).round() / 1e3) as f32);
+                let [x, y] = rounded(*p);
                 if i == 0 {
                     content.move_to(x, y);
                 } else {
@@ -67,4 +69,34 @@ fn content(plot: &Plot) -> Content {
         }
     }
     content
+}
+
+/// Paints areas one over the other.
+fn fill(fills: &Fills, content: &mut Content) {
+    content.set_line_width(fills.seam_mm as f32);
+    for area in fills.iter() {
+        let [r, g, b] = area.color.map(|part| f32::from(part) / 255.0);
+        content.set_fill_rgb(r, g, b).set_stroke_rgb(r, g, b);
+        for ring in area.rings() {
+            for (i, &p) in ring.iter().enumerate() {
+                let [x, y] = rounded(p);
+                if i == 0 {
+                    content.move_to(x, y);
+                } else {
+                    content.line_to(x, y);
+                }
+            }
+            content.close_path();
+        }
+        if fills.seam_mm > 0.0 {
+            content.fill_even_odd_and_stroke();
+        } else {
+            content.fill_even_odd();
+        }
+    }
+}
+
+/// A point in whole micrometers.
+fn rounded(p: DVec2) -> [f32; 2] {
+    [p.x, p.y].map(|v| ((v * 1e3).round() / 1e3) as f32)
 }

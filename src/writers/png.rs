@@ -8,9 +8,10 @@ use std::io;
 use glam::DVec2;
 use png::{BitDepth, ColorType, Compression, Encoder, PixelDimensions, Unit};
 use thiserror::Error;
-use tiny_skia::{Color, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
+use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
 
-use crate::plot::Plot;
+use crate::light::order_color;
+use crate::plot::{Fills, Plot};
 
 /// Pixels per inch, unless set otherwise.
 pub const DEFAULT_DPI: f64 = 150.0;
@@ -113,7 +114,8 @@ pub fn write_marked(
     let mut n_drawn = 0;
     for layer in &plot.layers {
         let color = parse_color(&layer.pen.color)?;
-        gray &= color[0] == color[1] && color[1] == color[2];
+        gray &= is_gray(color) && layer.fills.iter().all(|area| is_gray(area.color));
+        fill(&layer.fills, px_per_mm, &mut pixmap);
         let width = layer.pen.width_mm;
         if marks.order {
             let strokes: Vec<&[DVec2]> = layer.lines.iter().collect();
@@ -122,7 +124,13 @@ pub fn write_marked(
             while start < strokes.len() {
                 let n = (start..strokes.len()).take_while(|&i| tone(i) == tone(start)).count();
                 let run = strokes[start..start + n].iter().copied();
-                draw(run, width, order_color(tone(start)), px_per_mm, &mut pixmap);
+                draw(
+                    run,
+                    width,
+                    order_color(tone(start) as f64 / (ORDER_COLORS - 1) as f64),
+                    px_per_mm,
+                    &mut pixmap,
+                );
                 start += n;
             }
         } else {
@@ -140,13 +148,6 @@ pub fn write_marked(
         }
     }
     encode(&pixmap, gray, px_per_mm, out)
-}
-
-/// The color of a tone below [`ORDER_COLORS`]: blue, green, red, with what lies between.
-fn order_color(tone: usize) -> [u8; 3] {
-    let part = 2.0 * tone as f64 / (ORDER_COLORS - 1) as f64;
-    let of = |near: f64| (208.0 * (1.0 - (part - near).abs()).clamp(0.0, 1.0)) as u8;
-    [of(2.0), of(1.0), of(0.0)]
 }
 
 fn draw<'a>(
@@ -183,6 +184,43 @@ fn draw<'a>(
         };
         pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
         builder = path.clear();
+    }
+}
+
+fn is_gray([r, g, b]: [u8; 3]) -> bool {
+    r == g && g == b
+}
+
+/// Paints the areas of a layer one over the other.
+fn fill(fills: &Fills, px_per_mm: f64, pixmap: &mut Pixmap) {
+    let seam = tiny_skia::Stroke {
+        // With less than a pixel, what is behind shines through where two areas share one.
+        width: ((fills.seam_mm * px_per_mm) as f32).max(1.0),
+        line_cap: LineCap::Round,
+        line_join: LineJoin::Round,
+        ..tiny_skia::Stroke::default()
+    };
+    for area in fills.iter() {
+        let mut builder = PathBuilder::new();
+        for ring in area.rings() {
+            for (i, &p) in ring.iter().enumerate() {
+                let p = p * px_per_mm;
+                if i == 0 {
+                    builder.move_to(p.x as f32, p.y as f32);
+                } else {
+                    builder.line_to(p.x as f32, p.y as f32);
+                }
+            }
+            builder.close();
+        }
+        let Some(path) = builder.finish() else { continue };
+        let mut paint = Paint { anti_alias: true, ..Paint::default() };
+        let [r, g, b] = area.color;
+        paint.set_color_rgba8(r, g, b, 255);
+        pixmap.fill_path(&path, &paint, FillRule::EvenOdd, Transform::identity(), None);
+        if fills.seam_mm > 0.0 {
+            pixmap.stroke_path(&path, &paint, &seam, Transform::identity(), None);
+        }
     }
 }
 

@@ -1,10 +1,10 @@
-//! SVG for plotters: true millimetres, one Inkscape layer a pen, nothing but strokes.
+//! SVG for plotters and print: true millimetres, one Inkscape layer a pen, strokes and filled areas.
 //!
 //! The `svg` crate builds the document: root, title, metadata and layers. The strokes of a layer
 //! are put in as one prepared text, for two reasons: the crate's path numbers are `f32`, and a node
 //! for each of a million strokes takes twenty seconds and a gigabyte where the text takes less
-//! than one second. There are no transforms, clip paths, dash arrays, fills or texts, since
-//! plotting software ignores or misreads them.
+//! than one second. There are no transforms, clip paths, dash arrays or texts, and no fills but of
+//! areas, since plotting software ignores or misreads them.
 
 use std::io;
 
@@ -14,7 +14,7 @@ use svg::Document;
 use svg::node::element::{Element, Group, Title};
 use svg::node::{Blob, Node, Text};
 
-use crate::plot::{Layer, Plot};
+use crate::plot::{Fills, Layer, Plot};
 
 /// How a stroke is written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -79,11 +79,57 @@ fn group(layer: &Layer, element: StrokeElement) -> Group {
         .set("stroke-width", millimetres(layer.pen.width_mm))
         .set("stroke-linecap", "round")
         .set("stroke-linejoin", "round");
+    let fills = fills(&layer.fills);
+    if !fills.is_empty() {
+        group.append(Blob::new(fills));
+    }
     let strokes = strokes(layer, element);
     if !strokes.is_empty() {
         group.append(Blob::new(strokes));
     }
     group
+}
+
+/// All areas of a layer, one a line: a path with a ring after the other, filled by the even-odd rule.
+fn fills(fills: &Fills) -> String {
+    let mut text = String::with_capacity(16 * fills.n_points() + 80 * fills.len());
+    for area in fills.iter() {
+        let [r, g, b] = area.color;
+        let color = format!("#{r:02x}{g:02x}{b:02x}");
+        let mut path = Vec::new();
+        for ring in area.rings() {
+            let mut points: Vec<[i64; 2]> = ring.iter().map(|&p| micrometres(p)).collect();
+            points.dedup();
+            if points.len() > 1 && points.first() == points.last() {
+                points.pop();
+            }
+            if points.len() < 3 {
+                continue;
+            }
+            for (i, point) in points.iter().enumerate() {
+                path.push(if i == 0 { b'M' } else { b'L' });
+                push_point(&mut path, point, b' ');
+            }
+            path.push(b'Z');
+        }
+        if path.is_empty() {
+            continue;
+        }
+        let path = ascii(path);
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        let seam = millimetres(fills.seam_mm);
+        let outline = if seam == "0" {
+            "stroke=\"none\"".to_owned()
+        } else {
+            format!("stroke=\"{color}\" stroke-width=\"{seam}\"")
+        };
+        text.push_str(&format!(
+            "<path fill=\"{color}\" fill-rule=\"evenodd\" {outline} d=\"{path}\"/>"
+        ));
+    }
+    text
 }
 
 /// Points of strokes that are written at once: enough that sharing the work costs nothing.

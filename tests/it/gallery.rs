@@ -50,6 +50,7 @@ macro_rules! pictures {
 pictures! {
     benchy_wheel the_wheel_is_up_to_date "../../examples/benchy_wheel.rs";
     city the_city_is_up_to_date "../../examples/city.rs";
+    fill_spot the_cow_in_inks_is_up_to_date "../../examples/fill_spot.rs";
     menger the_sponge_is_up_to_date "../../examples/menger.rs";
     platonic the_solids_are_up_to_date "../../examples/platonic.rs";
     spiral_stair the_stair_is_up_to_date "../../examples/spiral_stair.rs";

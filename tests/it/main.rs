@@ -8,6 +8,7 @@ mod closed_forms;
 mod drawings;
 mod engines;
 mod face;
+mod fill;
 mod formula;
 mod gallery;
 mod hidden_levels;

@@ -151,7 +151,7 @@ impl Item {
 /// Paints one view.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`enum@Error`].
 pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error> {
     let (fragments, mut counts) = order(scene, camera)?;
     let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);

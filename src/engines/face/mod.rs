@@ -23,7 +23,24 @@ pub mod piercing;
 
 pub mod occupancy;
 
+pub mod region;
+
+pub mod images;
+
+pub(crate) mod boxes;
+
+pub mod merge;
+
+pub mod warnock;
+
+pub mod weiler_atherton;
+
+use thiserror::Error;
+
+pub use self::bsp::TooManyFragments;
 pub use self::painting::{Painting, Piece};
+use crate::scene::Scene;
+use crate::view::Camera;
 
 /// The face engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -59,5 +76,133 @@ impl Counts {
         self.fragments += other.fragments;
         self.splits += other.splits;
         self.tests += other.tests;
+    }
+}
+
+impl Engine {
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::DepthSort => "depth-sort",
+            Self::Bsp => "bsp",
+            Self::Octree => "octree",
+            Self::Warnock => "warnock",
+            Self::WeilerAtherton => "weiler-atherton",
+        }
+    }
+}
+
+/// Why an engine does not begin.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FaceError {
+    /// It would take too long.
+    #[error(
+        "{engine} takes at most {most} faces, and {n} are in view; \
+         take --engine {instead}, or a simpler model"
+    )]
+    TooManyFaces {
+        /// The engine.
+        engine: &'static str,
+        /// How many there are.
+        n: usize,
+        /// How many it takes.
+        most: usize,
+        /// The engine that takes more.
+        instead: &'static str,
+    },
+    /// The leaves are too small.
+    #[error("{n:.0} leaves are too many; give a larger --leaf, {most:.0} are the most")]
+    TooManyLeaves {
+        /// How many there are.
+        n: f64,
+        /// How many there may be.
+        most: f64,
+    },
+    /// The faces are cut into too many pieces.
+    #[error(transparent)]
+    TooManyFragments(#[from] TooManyFragments),
+    /// Sorting would take too long, or finds no order.
+    #[error(transparent)]
+    NoOrder(#[from] depth_sort::Error),
+}
+
+/// What engines can be told.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Settings {
+    /// Width of a leaf in image units, for [`Engine::Warnock`]; `None` for one that suits the image.
+    pub leaf: Option<f64>,
+    /// How [`Engine::Warnock`] divides windows.
+    pub subdivision: warnock::Subdivision,
+}
+
+/// Up to so many triangles [`Engine::Auto`] takes [`Engine::WeilerAtherton`], whose regions are exact
+/// and whose files are the smallest; beyond, [`Engine::Bsp`] is faster.
+pub const MOST_EXACT: usize = 6_000;
+
+/// A scene made ready for an engine, once for any number of views.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    scene: &'a Scene,
+    engine: Engine,
+    trees: Trees,
+}
+
+/// What an engine keeps from view to view.
+#[derive(Debug)]
+enum Trees {
+    None,
+    Planes(bsp::Tree),
+    Octants(octree::Tree),
+}
+
+impl<'a> Prepared<'a> {
+    /// Chooses the engine and does what does not depend on the view.
+    ///
+    /// # Errors
+    /// [`FaceError::TooManyFragments`].
+    pub fn new(scene: &'a Scene, engine: Engine) -> Result<Self, FaceError> {
+        let engine = match engine {
+            Engine::Auto if scene.triangles().len() <= MOST_EXACT => Engine::WeilerAtherton,
+            Engine::Auto => Engine::Bsp,
+            named => named,
+        };
+        let trees = match engine {
+            Engine::Bsp => Trees::Planes(bsp::Tree::new(scene)?),
+            Engine::Octree => Trees::Octants(octree::Tree::new(scene)?),
+            _ => Trees::None,
+        };
+        Ok(Self { scene, engine, trees })
+    }
+
+    /// The engine that was chosen.
+    pub fn engine(&self) -> Engine {
+        self.engine
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// The visible regions as a camera sees them.
+    ///
+    /// # Errors
+    /// See [`FaceError`]; all are told before any work is done but counting.
+    pub fn solve(&self, camera: &Camera, settings: &Settings) -> Result<Painting, FaceError> {
+        let scene = self.scene;
+        match (self.engine, &self.trees) {
+            (_, Trees::Planes(tree)) => Ok(tree.paint(scene, camera)),
+            (_, Trees::Octants(tree)) => Ok(tree.paint_seen(scene, camera)),
+            (Engine::DepthSort, _) => Ok(depth_sort::solve(scene, camera)?.0),
+            (Engine::Warnock, _) => {
+                let Settings { leaf, subdivision, .. } = *settings;
+                let options = warnock::Options { leaf, subdivision, window: None };
+                warnock::solve(scene, camera, &options)
+            }
+            (Engine::Auto | Engine::WeilerAtherton | Engine::Bsp | Engine::Octree, _) => {
+                weiler_atherton::solve(scene, camera)
+            }
+        }
     }
 }

@@ -31,6 +31,14 @@ impl Depth {
         Self(self.0.saturating_add(1))
     }
 
+    /// The depth for a nearness of any sign.
+    pub fn of_any(nearness: f64) -> Self {
+        // Negative numbers have their bits in reverse order.
+        let bits = nearness.to_bits();
+        let ordered = if bits >> 63 == 0 { bits | 1 << 63 } else { !bits };
+        Self(ordered.saturating_add(1 << (BITS_LEFT_OUT - 1)) >> BITS_LEFT_OUT)
+    }
+
     /// The depth for a nearness; what is not positive is infinitely far away.
     #[inline]
     pub fn of(nearness: f64) -> Self {

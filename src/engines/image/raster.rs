@@ -379,6 +379,27 @@ impl<'a> Corners<'a> {
         }
     }
 
+    /// For each piece of a triangle the sides of the triangle that its sides lie on; `None` for what
+    /// the near plane cuts and for the diagonal between two pieces.
+    pub fn side_sources(&self, triangle: u32) -> [[Option<usize>; 3]; 2] {
+        const WHOLE: [Option<usize>; 3] = [Some(0), Some(1), Some(2)];
+        let vertices = self.scene.triangles()[triangle as usize];
+        let near = self.near.unwrap_or(f64::NEG_INFINITY);
+        let kept = vertices.map(|vertex| self.images[vertex as usize].w >= near);
+        match kept.iter().filter(|&&kept| kept).count() {
+            1 => {
+                let a = kept.iter().position(|&kept| kept).unwrap_or_default();
+                [[Some(a), None, Some((a + 2) % 3)], [None; 3]]
+            }
+            2 => {
+                let c = kept.iter().position(|&kept| !kept).unwrap_or_default();
+                let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+                [[Some(a), Some(b), None], [None, None, Some(c)]]
+            }
+            _ => [WHOLE, WHOLE],
+        }
+    }
+
     /// See [`super::depth`].
     #[inline]
     fn nearness(&self, corner: &ImagePoint) -> f64 {

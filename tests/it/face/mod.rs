@@ -6,11 +6,11 @@ mod judge;
 mod models;
 mod order;
 
-use hiddenline::engines::face::{Painting, bsp, depth_sort, octree};
+use hiddenline::engines::face::{Painting, bsp, depth_sort, octree, weiler_atherton};
 use hiddenline::scene::Scene;
 use hiddenline::view::Camera;
 
-/// A list-priority engine.
+/// An engine without settings.
 type Solve = fn(&Scene, &Camera) -> Painting;
 
 const ENGINES: [(&str, Solve); 4] = [
@@ -19,3 +19,7 @@ const ENGINES: [(&str, Solve); 4] = [
     ("octree, all", |scene, camera| octree::Tree::new(scene).unwrap().paint(scene, camera)),
     ("depth sort", |scene, camera| depth_sort::solve(scene, camera).unwrap().0),
 ];
+
+/// The one that finds regions instead of an order.
+const EXACT: (&str, Solve) =
+    ("weiler-atherton", |scene, camera| weiler_atherton::solve(scene, camera).unwrap());

@@ -1,7 +1,7 @@
 //! Models from elsewhere: rounded, open, crossing themselves.
 
-use super::ENGINES;
 use super::judge::World;
+use super::{ENGINES, EXACT};
 use crate::image::model;
 use hiddenline::engines::face::{bsp, depth_sort, piercing};
 use hiddenline::framing::{Framing, NamedView, Standpoint};
@@ -36,7 +36,7 @@ fn paintings_of_models_are_what_exact_rays_meet() {
         for framing in [Framing::default(), Framing { standpoint: top, ..Framing::default() }] {
             let camera = framing.camera(bounds).unwrap();
             let world = World::new(&scene, &camera);
-            for (engine, solve) in ENGINES {
+            for (engine, solve) in ENGINES.into_iter().chain([EXACT]) {
                 let (judged, _) = world
                     .judge(&solve(&scene, &camera), 20)
                     .unwrap_or_else(|problem| panic!("{name}, {engine}: {problem}"));

@@ -1,7 +1,7 @@
 //! The order of painting: on scenes with known traps, and on random ones.
 
-use super::ENGINES;
 use super::judge::World;
+use super::{ENGINES, EXACT};
 use crate::engines::{camera, mesh};
 use crate::oracle::Sight;
 use crate::scenes::{
@@ -15,7 +15,7 @@ fn judge(scene: &TestScene, n: u32) -> u32 {
     let (built, camera) = (Scene::new(mesh(scene)), camera(scene));
     let world = World::new(&built, &camera);
     let mut least = u32::MAX;
-    for (engine, solve) in ENGINES {
+    for (engine, solve) in ENGINES.into_iter().chain([EXACT]) {
         let painting = solve(&built, &camera);
         match world.judge(&painting, n) {
             Ok((judged, _)) => least = least.min(judged),

@@ -1,0 +1,75 @@
+//! Borders that are one in truth made one on the grid.
+//!
+//! ```text
+//!   ●───────────●        ●─────●─────●      a corner of one border within a few steps of the
+//!     ····●····     ──►   ╲___╱ ╲___╱       side of another becomes a corner of both; corners
+//!   ●─────┘             (exaggerated)       within a few steps of each other become one
+//! ```
+
+use glam::DVec2;
+
+use super::{SLIVER_STEPS, Side};
+use crate::engines::face::boxes::BoxIndex;
+
+/// The sides with their corners on each other where they are near.
+pub(super) fn welded(sides: Vec<Side>) -> Vec<Side> {
+    let mut corners: Vec<DVec2> = sides.iter().map(|side| side.from).collect();
+    corners.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    corners.dedup();
+    let kept = first_near(&corners);
+    let find = |at: DVec2| {
+        let place = corners.binary_search_by(|p| p.x.total_cmp(&at.x).then(p.y.total_cmp(&at.y)));
+        place.map_or(at, |number| corners[kept[number] as usize])
+    };
+    let moved: Vec<Side> = sides
+        .into_iter()
+        .map(|side| Side { from: find(side.from), to: find(side.to), ..side })
+        .filter(|side| side.from != side.to)
+        .collect();
+    let around = DVec2::splat(SLIVER_STEPS);
+    let bounds = |side: &Side| (side.from.min(side.to) - around, side.from.max(side.to) + around);
+    let index = BoxIndex::new(moved.iter().map(bounds).collect());
+    // The corners on each side, as part of the way along it.
+    let mut on_side: Vec<(u32, f64, DVec2)> = Vec::new();
+    let mut near = Vec::new();
+    for (number, &corner) in (0..).zip(&corners) {
+        if kept[number as usize] != number {
+            continue;
+        }
+        index.overlapping((corner - 1.0, corner + 1.0), &mut near);
+        for &side in &near {
+            let Side { from, to, .. } = moved[side as usize];
+            let (way, past) = (to - from, corner - from);
+            let part = past.dot(way) / way.length_squared();
+            let inside = corner != from && corner != to && part > 0.0 && part < 1.0;
+            if inside && past.distance(way * part) <= SLIVER_STEPS {
+                on_side.push((side, part, corner));
+            }
+        }
+    }
+    on_side.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut result = Vec::with_capacity(moved.len() + on_side.len());
+    let mut next = on_side.into_iter().peekable();
+    for (number, side) in (0..).zip(moved) {
+        let mut from = side.from;
+        while let Some((_, _, corner)) = next.next_if(|(side, _, _)| *side == number) {
+            result.push(Side { from, to: corner, ..side });
+            from = corner;
+        }
+        result.push(Side { from, ..side });
+    }
+    result
+}
+
+/// For each corner, in order of x, the first one within a few steps of it that stays where it is.
+fn first_near(corners: &[DVec2]) -> Vec<u32> {
+    let mut kept: Vec<u32> = Vec::with_capacity(corners.len());
+    for (number, &corner) in corners.iter().enumerate() {
+        let before = (0..number).rev().take_while(|&k| corner.x - corners[k].x <= SLIVER_STEPS);
+        let near = before
+            .filter(|&k| kept[k] as usize == k && corner.distance(corners[k]) <= SLIVER_STEPS)
+            .last();
+        kept.push(near.unwrap_or(number) as u32);
+    }
+    kept
+}

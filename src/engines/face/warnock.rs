@@ -1,0 +1,302 @@
+//! Warnock (1969): windows of the image, divided until each is simple.
+//!
+//! Read in "Algoritmy viditeľnosti" (section Warnockov algoritmus delenia okna, and AREA-SUBDIVISION
+//! METHOD after Hearn and Baker) and in "Bereichsunterteilungs-Algorithmen" (Warnock-Algorithmus).
+//! A window whose content is simple is drawn at once; any other is divided, down to a leaf as wide
+//! as a pen, where the nearest face at the center decides.
+//!
+//! ```text
+//!  surrounding   intersecting   contained     disjoint
+//!  ▒▒▒▒▒▒▒▒▒▒     ┌──────┐       ┌──────┐     ┌──────┐ ▒▒     window ┌──┐
+//!  ▒┌──────┐▒    ▒│▒▒    │       │ ▒▒▒  │     │      │ ▒▒            └──┘
+//!  ▒│▒▒▒▒▒▒│▒    ▒│▒▒▒   │       │  ▒▒  │     │      │  ▒     polygon ▒▒
+//!  ▒└──────┘▒     └──────┘       └──────┘     └──────┘
+//!  ▒▒▒▒▒▒▒▒▒▒
+//! ```
+//!
+//! * **K1**: a surrounding polygon is in front of all others: the window is of its color.
+//! * **K2**: one polygon, or none, reaches into the window: what it covers of it is of its color.
+//!
+//! That a surrounding polygon is in front is tested in both ways of the source: by sorting, its
+//! farthest point in the window being nearer than the nearest of all others; and by the depths of all
+//! planes at the four corners of the window. Before, the planes decide exactly for polygons that do
+//! not cross, see [`Images::place`]. What is behind a surrounding polygon is not handed down to the
+//! parts of the window.
+//!
+//! Windows are divided regularly, into quarters, or at the vertex of a polygon that is nearest
+//! to the middle ([`Subdivision`]); a window that is one row or column of leaves is divided in one
+//! direction only. Borders of windows are borders of leaves always, so both ways come down to the
+//! same leaves. In the end all that was drawn of a face is joined to polygons.
+//!
+//! Differs from the sources in that windows with one polygon are cut exactly, not in pixels; so
+//! only where several faces meet is the border a staircase of leaves.
+//!
+//! Good for: looking at how complicated a picture is; scenes with few, large faces. Exactness: within
+//! a leaf of where two faces meet. Cost: leaves along all borders between faces × log; candidates
+//! become fewer from window to window. Cannot: more than [`MOST_LEAVES`] leaves, refused at once.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::images::{Images, Place};
+use super::painting::{NO_LINE, Painting};
+use super::region::{Region, Side};
+use super::{FaceError, merge};
+use crate::engines::image::depth::Depth;
+use crate::scene::Scene;
+use crate::view::Camera;
+
+/// Leaves along the diagonal of the image, unless a size is set.
+pub const DEFAULT_LEAVES: f64 = 1000.0;
+
+/// More leaves than this are refused.
+pub const MOST_LEAVES: f64 = 100e6;
+
+/// How windows are divided.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Subdivision {
+    /// In the middle.
+    #[default]
+    Regular,
+    /// At the vertex nearest to the middle, so that fewer windows hold several faces.
+    Vertices,
+}
+
+/// The window that is divided, in leaves.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Options {
+    /// Width and height of a leaf in image units; `None` for a thousandth of the image's diagonal.
+    pub leaf: Option<f64>,
+    /// The first window, as (lowest, highest) corner; `None` for the box around the image. It is
+    /// widened to whole leaves at its high end.
+    pub window: Option<(DVec2, DVec2)>,
+    /// How windows are divided.
+    pub subdivision: Subdivision,
+}
+
+/// Finds what is seen of each face.
+///
+/// The pieces lie beside each other, in the order of faces. In parallel, and the same with any number
+/// of threads.
+///
+/// # Errors
+/// [`FaceError::TooManyLeaves`].
+pub fn solve(scene: &Scene, camera: &Camera, options: &Options) -> Result<Painting, FaceError> {
+    let images = Images::new(scene, camera);
+    if images.flats.is_empty() {
+        return Ok(Painting::new(true));
+    }
+    let (low, high) = options.window.unwrap_or(images.bounds);
+    let diagonal = (high - low).length();
+    let leaf = options.leaf.filter(|leaf| *leaf > 0.0).unwrap_or(diagonal / DEFAULT_LEAVES);
+    let n = ((high - low) / leaf).ceil().max(DVec2::ONE);
+    let n_leaves = n.x * n.y;
+    if n_leaves.is_nan() || n_leaves > MOST_LEAVES {
+        return Err(FaceError::TooManyLeaves { n: n_leaves, most: MOST_LEAVES });
+    }
+    let warnock = Warnock { images: &images, low, leaf, subdivision: options.subdivision };
+    let all: Vec<u32> = (0..images.flats.len() as u32).collect();
+    let root = Window { from: [0, 0], to: [n.x as u32, n.y as u32] };
+    // What is drawn of each polygon, window by window in a fixed order.
+    let mut drawn: Vec<Vec<Region>> = vec![Vec::new(); images.flats.len()];
+    for (polygon, region) in warnock.window(root, &all, PARALLEL_LEVELS) {
+        drawn[polygon as usize].push(region);
+    }
+    let faces = images.flats.iter().map(|flat| flat.face).zip(drawn);
+    Ok(merge::by_face(faces, &images.grid))
+}
+
+/// So many times are the parts of a window divided by several threads.
+const PARALLEL_LEVELS: u32 = 4;
+
+/// A rectangle of leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Window {
+    from: [u32; 2],
+    to: [u32; 2],
+}
+
+/// How a polygon lies to a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Surrounding,
+    Intersecting,
+    Contained,
+    Disjoint,
+}
+
+struct Warnock<'a> {
+    images: &'a Images<'a>,
+    low: DVec2,
+    leaf: f64,
+    subdivision: Subdivision,
+}
+
+type Drawn = Vec<(u32, Region)>;
+
+impl Warnock<'_> {
+    fn window(&self, window: Window, candidates: &[u32], parallel: u32) -> Drawn {
+        let bounds = self.bounds(window);
+        let mut reaching: Vec<(u32, Class)> = Vec::new();
+        for &polygon in candidates {
+            match self.class(polygon, bounds) {
+                Class::Disjoint => {}
+                class => reaching.push((polygon, class)),
+            }
+        }
+        self.drop_hidden(&mut reaching, bounds);
+        match reaching[..] {
+            // K2
+            [] => return Vec::new(),
+            [(polygon, Class::Surrounding)] => return vec![(polygon, self.rectangle(bounds))],
+            [(polygon, _)] => {
+                let region = &self.images.flats[polygon as usize].region;
+                return vec![(polygon, region.within(&self.rectangle(bounds)))];
+            }
+            _ => {}
+        }
+        let [columns, rows] = [0, 1].map(|axis| window.to[axis] - window.from[axis]);
+        if columns == 1 && rows == 1 {
+            return self.leaf(&reaching, bounds);
+        }
+        let polygons: Vec<u32> = reaching.iter().map(|&(polygon, _)| polygon).collect();
+        let parts = self.divided(window, &polygons);
+        if parallel > 0 {
+            let drawn = parts.par_iter().map(|&part| self.window(part, &polygons, parallel - 1));
+            return drawn.collect::<Vec<Drawn>>().into_iter().flatten().collect();
+        }
+        parts.into_iter().flat_map(|part| self.window(part, &polygons, 0)).collect()
+    }
+
+    /// Leaves out what is behind a polygon that surrounds the window. If that is all, this is K1.
+    fn drop_hidden(&self, reaching: &mut Vec<(u32, Class)>, bounds: (DVec2, DVec2)) {
+        let middle = (bounds.0 + bounds.1) / 2.0;
+        let at_middle = |polygon: u32| self.nearness(polygon, middle);
+        let surrounding = reaching.iter().filter(|(_, class)| *class == Class::Surrounding);
+        // Of those only the nearest in the middle can be in front of all.
+        let front = surrounding.map(|&(polygon, _)| polygon).reduce(|a, b| {
+            if Depth::of_any(at_middle(b)) > Depth::of_any(at_middle(a)) { b } else { a }
+        });
+        let Some(front) = front else { return };
+        reaching.retain(|&(polygon, _)| polygon == front || !self.hides(front, polygon, bounds));
+    }
+
+    /// Whether a polygon that surrounds a window is in front of another all over it.
+    fn hides(&self, front: u32, other: u32, bounds: (DVec2, DVec2)) -> bool {
+        match self.images.place(front as usize, other as usize) {
+            Place::Behind => true,
+            Place::InFront => false,
+            Place::Crossing => {
+                let corners = corners(bounds);
+                let farthest = corners
+                    .map(|c| self.nearness(front, c))
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min);
+                // Sorted by their depth.
+                self.images.flats[other as usize].nearest < farthest
+                    // By the planes at the corners.
+                    || corners.iter().all(|&c| self.nearness(front, c) > self.nearness(other, c))
+            }
+        }
+    }
+
+    /// The nearest polygon at the center of a leaf; of equally near ones the first.
+    fn leaf(&self, reaching: &[(u32, Class)], bounds: (DVec2, DVec2)) -> Drawn {
+        let center = (bounds.0 + bounds.1) / 2.0;
+        let on_grid = self.images.grid.snap(center);
+        let covers = |polygon: u32| self.images.flats[polygon as usize].region.contains(on_grid);
+        let covering = reaching.iter().map(|&(polygon, _)| polygon).filter(|&p| covers(p));
+        let nearest = covering.reduce(|a, b| {
+            let depth = |polygon| Depth::of_any(self.nearness(polygon, center));
+            if depth(b) > depth(a) { b } else { a }
+        });
+        nearest.map(|polygon| (polygon, self.rectangle(bounds))).into_iter().collect()
+    }
+
+    fn nearness(&self, polygon: u32, point: DVec2) -> f64 {
+        self.images.flats[polygon as usize].nearness.at(point)
+    }
+
+    fn bounds(&self, window: Window) -> (DVec2, DVec2) {
+        let at = |[i, j]: [u32; 2]| self.low + DVec2::new(f64::from(i), f64::from(j)) * self.leaf;
+        (at(window.from), at(window.to))
+    }
+
+    fn rectangle(&self, bounds: (DVec2, DVec2)) -> Region {
+        let corners = corners(bounds).map(|corner| (self.images.grid.snap(corner), NO_LINE));
+        Region::of_rings([corners])
+    }
+
+    fn class(&self, polygon: u32, bounds: (DVec2, DVec2)) -> Class {
+        let region = &self.images.flats[polygon as usize].region;
+        let (low, high) = (self.images.grid.snap(bounds.0), self.images.grid.snap(bounds.1));
+        let of = region.bounds();
+        if of.0.cmpge(high).any() || of.1.cmple(low).any() {
+            return Class::Disjoint;
+        }
+        if of.0.cmpge(low).all() && of.1.cmple(high).all() {
+            return Class::Contained;
+        }
+        if region.sides().iter().any(|side| reaches(side, low, high)) {
+            return Class::Intersecting;
+        }
+        if region.contains(((low + high) / 2.0).round()) {
+            Class::Surrounding
+        } else {
+            Class::Disjoint
+        }
+    }
+
+    /// The parts of a window: four, or two of a row or column.
+    fn divided(&self, window: Window, polygons: &[u32]) -> Vec<Window> {
+        let at = match self.subdivision {
+            Subdivision::Regular => None,
+            Subdivision::Vertices => self.vertex(window, polygons),
+        };
+        let middle = [0, 1].map(|axis| (window.from[axis] + window.to[axis]) / 2);
+        let at = at.unwrap_or(middle);
+        let halves = |axis: usize| -> Vec<[u32; 2]> {
+            let (from, to) = (window.from[axis], window.to[axis]);
+            if to - from == 1 { vec![[from, to]] } else { vec![[from, at[axis]], [at[axis], to]] }
+        };
+        let (columns, rows) = (halves(0), halves(1));
+        let parts = rows.iter().flat_map(|row| columns.iter().map(move |column| (column, row)));
+        parts
+            .map(|(column, row)| Window { from: [column[0], row[0]], to: [column[1], row[1]] })
+            .collect()
+    }
+
+    /// The border of leaves next to that vertex in a window which is nearest to its middle.
+    fn vertex(&self, window: Window, polygons: &[u32]) -> Option<[u32; 2]> {
+        let (low, high) = self.bounds(window);
+        let middle = (low + high) / 2.0;
+        let grid = &self.images.grid;
+        let sides = polygons.iter().flat_map(|&p| self.images.flats[p as usize].region.sides());
+        let vertices = sides.map(|side| grid.point(side.from));
+        let inside = vertices.filter(|p| p.cmpgt(low).all() && p.cmplt(high).all());
+        let vertex = inside
+            .min_by(|a, b| a.distance_squared(middle).total_cmp(&b.distance_squared(middle)))?;
+        let at = ((vertex - self.low) / self.leaf).round();
+        // A window one leaf wide is not divided that way, whatever this says.
+        let within = |axis: usize| {
+            let (least, most) = (window.from[axis] + 1, (window.to[axis] - 1).max(1));
+            (at[axis] as u32).clamp(least.min(most), most)
+        };
+        Some([within(0), within(1)])
+    }
+}
+
+fn corners((low, high): (DVec2, DVec2)) -> [DVec2; 4] {
+    [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]
+}
+
+/// Whether a side runs through the inside of a rectangle.
+fn reaches(side: &Side, low: DVec2, high: DVec2) -> bool {
+    let (a, b) = (side.from, side.to);
+    if a.max(b).cmple(low).any() || a.min(b).cmpge(high).any() {
+        return false;
+    }
+    // Not when all corners are on one side of it.
+    let turns = corners((low, high)).map(|corner| super::region::turn(a, b, corner).signum());
+    turns.contains(&1) && turns.contains(&-1)
+}

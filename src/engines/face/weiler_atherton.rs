@@ -1,0 +1,253 @@
+//! Weiler and Atherton (1977): exact visible regions, faces clipped by nearer faces.
+//!
+//! Read in "Algoritmy viditeľnosti" (section Weiler – Athertonov algoritmus) and in
+//! "Bereichsunterteilungs-Algorithmen" (Weiler-Atherton-Algorithmus). The list of polygons L is
+//! sorted by the distance of their nearest points. Its first one, P, clips the others into a list I
+//! of what lies inside it and a list O of what lies outside. What of I is behind P is hidden; if
+//! nothing is left of I, all of P is seen. Otherwise the sorting was wrong there, and the same is
+//! done with I first. Then it goes on with O.
+//!
+//! ```text
+//!        ┌──────┐ Q
+//!   P ┌──┼───┐  │       I = { Q ∩ P }    behind P: hidden
+//!     │  └┄┄┄┼──┘                        in front of P: goes first
+//!     └──────┘          O = { Q − P }    P is done
+//! ```
+//!
+//! Where a whole polygon is in front of P, it is simply taken before P; only where it crosses P, or
+//! where polygons cover each other in turn, are parts of I solved apart.
+//!
+//! The set S holds the polygons that clip at the moment. One of them that comes up again has been
+//! clipped by all that is in front of it and is drawn without clipping, so nothing goes in circles.
+//!
+//! Differs from the sources in that
+//!
+//! * S is kept through all calls: emptied on each, as printed, it never holds what it must;
+//! * P itself is the last of I, since what is in front of it clips it, too;
+//! * faces that pierce each other are cut where their depths are equal, so that what lies inside P
+//!   is either behind or in front of it, where the sources take polygons that do not cross.
+//!
+//! Good for: cutters, engravers, inks that must not overlap. The regions lie beside each other, and
+//! all of a face that is seen in one place is one region with holes.
+//!
+//! Exactness: what is in front is decided exactly, by [`Images::place`], but for faces that pierce
+//! each other, whose line is rounded to the grid like all points; see [`super::region`] for the bound.
+//!
+//! Cost: one operation for each face, with all faces before it that its box overlaps, and one for each
+//! pair that crosses or is sorted wrongly: O(n²) at worst. What overlaps is found by an index of boxes.
+//! A smooth closed mesh of 5,900 triangles takes 0.4 s on two cores, a plate of 16,700 with holes 0.6 s;
+//! hundreds of faces that pierce each other in heaps take longer, 1,400 of them more than 8 s. More than
+//! [`MOST_FACES`] are refused at once.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::boxes::BoxIndex;
+use super::images::{Images, Place};
+use super::painting::Painting;
+use super::region::Region;
+use super::{FaceError, merge};
+use crate::scene::Scene;
+use crate::view::Camera;
+
+/// More faces (triangles, of bent ones) in the image than this are refused.
+pub const MOST_FACES: usize = 10_000;
+
+/// Polygons that one piece of parallel work compares with the first one, at least.
+const MIN_LEN: usize = 8;
+
+/// Finds the visible region of each face.
+///
+/// The pieces lie beside each other; a face has one for each place where it is seen, in the order of
+/// faces. See the module for what is exact.
+///
+/// # Errors
+/// [`FaceError::TooManyFaces`].
+pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
+    let images = Images::new(scene, camera);
+    let n = images.flats.len();
+    if n > MOST_FACES {
+        return Err(FaceError::TooManyFaces {
+            engine: "weiler-atherton",
+            n,
+            most: MOST_FACES,
+            instead: "bsp",
+        });
+    }
+    let mut order: Vec<u32> = (0..n as u32).collect();
+    order.sort_by(|&a, &b| {
+        let nearest = |flat: u32| images.flats[flat as usize].nearest;
+        nearest(b).total_cmp(&nearest(a)).then(a.cmp(&b))
+    });
+    let mut rank = vec![0; n];
+    for (k, &flat) in order.iter().enumerate() {
+        rank[flat as usize] = k;
+    }
+    let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
+    let mut work = Work { images: &images, clipping: vec![false; n], drawn: vec![Vec::new(); n] };
+    // What is left of each polygon: L, and after each step O.
+    let mut left: Vec<Rest> =
+        images.flats.iter().map(|flat| Rest::new(flat.region.clone())).collect();
+    let mut is_done = vec![false; n];
+    let mut is_begun = vec![false; n];
+    let mut near = Vec::new();
+    for &nearest in &order {
+        // What is in front of the last one is put on top of it, to come first.
+        let mut waiting = vec![nearest];
+        while let Some(&first) = waiting.last() {
+            if is_done[first as usize] {
+                waiting.pop();
+                continue;
+            }
+            is_begun[first as usize] = true;
+            let region = std::mem::take(&mut left[first as usize]).region();
+            if region.is_empty() {
+                is_done[first as usize] = true;
+                continue;
+            }
+            index.overlapping(region.bounds(), &mut near);
+            near.retain(|&other| other != first && !is_done[other as usize]);
+            near.sort_by_key(|&other| rank[other as usize]);
+            let goes_first = |&other: &u32| {
+                !is_begun[other as usize]
+                    && images.place(first as usize, other as usize) == Place::InFront
+                    && !left[other as usize].within(&region).is_empty()
+            };
+            let before: Vec<u32> =
+                near.par_iter().with_min_len(MIN_LEN).copied().filter(goes_first).collect();
+            if !before.is_empty() {
+                left[first as usize] = Rest::new(region);
+                waiting.extend(before.iter().rev());
+                continue;
+            }
+            work.clipping[first as usize] = true;
+            let in_front = near
+                .par_iter()
+                .with_min_len(MIN_LEN)
+                .map(|&other| (other, work.in_front(first, &region, other, &left[other as usize])));
+            let mut inside: Vec<(u32, Region)> = in_front.collect();
+            inside.retain(|(_, front)| !front.is_empty());
+            let region = Arc::new(region);
+            for &other in &near {
+                left[other as usize].leave_out(&region);
+            }
+            work.draw(first, region, inside);
+            work.clipping[first as usize] = false;
+            is_done[first as usize] = true;
+        }
+    }
+    let faces = images.flats.iter().map(|flat| flat.face).zip(work.drawn);
+    Ok(merge::by_face(faces, &images.grid))
+}
+
+struct Work<'a> {
+    images: &'a Images<'a>,
+    /// The set S.
+    clipping: Vec<bool>,
+    /// What is seen of each polygon.
+    drawn: Vec<Vec<Region>>,
+}
+
+impl Work<'_> {
+    /// What of the rest of polygon `other` lies within `region` of polygon `first` and in front of it.
+    fn in_front(&self, first: u32, region: &Region, other: u32, left: &Rest) -> Region {
+        let (this, that) = (first as usize, other as usize);
+        match self.images.place(this, that) {
+            Place::Behind => Region::default(),
+            Place::InFront => left.within(region),
+            Place::Crossing => {
+                let inside = left.within(region);
+                if inside.is_empty() { inside } else { self.nearer_part(inside, this, that) }
+            }
+        }
+    }
+
+    /// The part of `inside` where `that` is nearer than `this`, cut where they are equally near.
+    fn nearer_part(&self, inside: Region, this: usize, that: usize) -> Region {
+        match self.images.where_nearer(that, this) {
+            Some(half) => inside.within(&half),
+            None => {
+                let (low, high) = inside.bounds();
+                let middle = self.images.grid.point((low + high) / 2.0);
+                let is_nearer = self.images.difference(that, this).at(middle) > 0.0;
+                if is_nearer { inside } else { Region::default() }
+            }
+        }
+    }
+
+    /// Draws `region` of polygon `first`, which is in S, after what is in front of it.
+    fn draw(&mut self, first: u32, region: Arc<Region>, in_front: Vec<(u32, Region)>) {
+        if in_front.is_empty() {
+            self.drawn[first as usize].push(Arc::unwrap_or_clone(region));
+            return;
+        }
+        let mut list: VecDeque<(u32, Rest)> =
+            in_front.into_iter().map(|(other, front)| (other, Rest::new(front))).collect();
+        list.push_back((first, Rest::new(Arc::unwrap_or_clone(region))));
+        self.solve(list);
+    }
+
+    /// The algorithm on a list L, sorted from near to far.
+    fn solve(&mut self, mut list: VecDeque<(u32, Rest)>) {
+        while let Some((first, rest)) = list.pop_front() {
+            let region = rest.region();
+            if region.is_empty() {
+                continue;
+            }
+            if self.clipping[first as usize] {
+                self.drawn[first as usize].push(region);
+                continue;
+            }
+            self.clipping[first as usize] = true;
+            let mut inside = Vec::new();
+            let region = Arc::new(region);
+            for (other, left) in &mut list {
+                // What clips at the moment comes last: all before it is in front of it.
+                if !self.clipping[*other as usize] {
+                    let front = self.in_front(first, &region, *other, left);
+                    if !front.is_empty() {
+                        inside.push((*other, front));
+                    }
+                }
+                left.leave_out(&region);
+            }
+            self.draw(first, region, inside);
+            self.clipping[first as usize] = false;
+        }
+    }
+}
+
+/// What is left of a polygon. What clips it is kept beside it and taken off in one operation when the
+/// polygon comes up, so its border is rounded once, and the cost of many clips does not add up.
+#[derive(Debug, Default)]
+struct Rest {
+    region: Region,
+    without: Vec<Arc<Region>>,
+}
+
+impl Rest {
+    fn new(region: Region) -> Self {
+        Self { region, without: Vec::new() }
+    }
+
+    fn leave_out(&mut self, clip: &Arc<Region>) {
+        if self.region.boxes_overlap(clip) {
+            self.without.push(Arc::clone(clip));
+        }
+    }
+
+    fn within(&self, region: &Region) -> Region {
+        let inside = self.region.within(region);
+        if inside.is_empty() {
+            return inside;
+        }
+        let near = self.without.iter().filter(|clip| clip.boxes_overlap(&inside));
+        inside.without_all(near.map(Arc::as_ref))
+    }
+
+    fn region(self) -> Region {
+        self.region.without_all(self.without.iter().map(Arc::as_ref))
+    }
+}

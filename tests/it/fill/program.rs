@@ -1,0 +1,141 @@
+//! `hiddenline fill` as a program.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const SPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");
+
+fn fill(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
+    command.arg("fill").args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn the_svg_has_an_area_for_each_face_below_the_lines() {
+    let output = fill(&[SPOT, "--up-axis", "y", "--stats"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let svg = text(&output.stdout);
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let layers: Vec<_> = document
+        .descendants()
+        .filter(|node| {
+            node.attribute(("http://www.inkscape.org/namespaces/inkscape", "groupmode")).is_some()
+        })
+        .collect();
+    let ids: Vec<_> = layers.iter().filter_map(|layer| layer.attribute("id")).collect();
+    assert_eq!(ids, ["pen1-fills", "pen2-visible"]);
+    let areas: Vec<_> = layers[0].children().filter(|node| node.is_element()).collect();
+    assert!(areas.len() > 1000);
+    assert!(areas.iter().all(|area| area.attribute("fill") == area.attribute("stroke")));
+    assert!(layers[1].children().all(|line| line.attribute("fill").is_none()));
+    let stats: serde_json::Value =
+        serde_json::from_str(text(&output.stderr).lines().last().unwrap()).unwrap();
+    assert_eq!(stats["engine"], "weiler-atherton");
+    assert_eq!(stats["triangles"], 5856);
+}
+
+#[test]
+fn every_engine_fills_and_draws_no_edges_when_told() {
+    let engines = ["auto", "depth-sort", "bsp", "octree", "warnock", "weiler-atherton"];
+    for engine in engines {
+        let output =
+            fill(&[SPOT, "--up-axis", "y", "--engine", engine, "--no-edges", "--leaf", "1"]);
+        assert!(output.status.success(), "{engine}: {}", text(&output.stderr));
+        let svg = text(&output.stdout);
+        assert!(svg.contains("pen1-fills") && !svg.contains("visible"), "{engine}");
+    }
+}
+
+#[test]
+fn each_ink_is_a_layer_and_cutters_get_no_outline() {
+    let arguments = [SPOT, "--palette", "navy,rgb(230,120,30),ivory", "--seam", "0", "--no-edges"];
+    let output = fill(&arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let svg = text(&output.stdout);
+    for ink in ["pen1-ink1", "pen2-ink2", "pen3-ink3"] {
+        assert!(svg.contains(ink), "{ink}");
+    }
+    assert!(svg.contains("fill=\"#e6781e\" fill-rule=\"evenodd\" stroke=\"none\""));
+}
+
+#[test]
+fn a_turntable_makes_numbered_files_of_one_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("turn.svg");
+    let name = file.to_str().unwrap();
+    let output = fill(&[SPOT, "--up-axis", "y", "--turntable", "3", "--engine", "bsp", "-o", name]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let pictures: Vec<String> = (1..=3)
+        .map(|k| std::fs::read_to_string(folder.path().join(format!("turn-00{k}.svg"))).unwrap())
+        .collect();
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
+    assert!(!file.exists());
+    assert_eq!(fill(&[SPOT, "--turntable", "3"]).status.code(), Some(2));
+}
+
+#[test]
+fn what_cannot_be_filled_is_refused_and_leaves_files_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("kept.svg");
+    std::fs::write(&file, "kept").unwrap();
+    let name = file.to_str().unwrap();
+    for (arguments, code, message) in [
+        (vec![SPOT, "--format", "hpgl", "-o", name], 2, "no filled areas"),
+        (vec![SPOT, "--palette", "0", "-o", name], 2, "from 1 to 64 inks"),
+        (vec![SPOT, "--palette", "nocolor", "-o", name], 2, "is no color"),
+        (vec![SPOT, "--palette", "3", "--debug", "order", "-o", name], 2, "cannot be used"),
+        (vec![SPOT, "--engine", "warnock", "--leaf", "0.001", "-o", name], 1, "too many"),
+        (vec!["missing.obj", "-o", name], 1, "missing.obj"),
+        (vec![SPOT, "--margin", "500", "-o", name], 1, "margin"),
+    ] {
+        let output = fill(&arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        let error = text(&output.stderr);
+        assert!(error.contains(message), "{arguments:?}: {error}");
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "kept", "{arguments:?}");
+    }
+}
+
+#[test]
+fn materials_have_the_colors_of_their_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl other\nKd 0 1 0\n");
+    write(
+        "a.obj",
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n\
+         usemtl red\nf 1 2 3 4\nusemtl none\nf 2 5 6 3\n",
+    );
+    let model = folder.path().join("a.obj");
+    let run = |path: &Path| {
+        fill(&[
+            path.to_str().unwrap(),
+            "--view",
+            "top",
+            "--light",
+            "0,0,1",
+            "--paint",
+            "#0000ff",
+            "--no-edges",
+        ])
+    };
+    let svg = text(&run(&model).stdout);
+    assert!(svg.contains("fill=\"#ff0000\"") && svg.contains("fill=\"#0000ff\""), "{svg}");
+    std::fs::remove_file(folder.path().join("a.mtl")).unwrap();
+    let output = run(&model);
+    assert!(text(&output.stderr).contains("a.mtl"));
+    assert!(!text(&output.stdout).contains("#ff0000"));
+}
+
+#[test]
+fn the_order_of_painting_can_be_seen() {
+    let output = fill(&[SPOT, "--engine", "bsp", "--debug", "order", "--no-edges"]);
+    let svg = text(&output.stdout);
+    let first = svg.find("fill=\"#0000d0\"").unwrap();
+    let last = svg.rfind("fill=\"#d00000\"").unwrap();
+    assert!(first < last);
+}
