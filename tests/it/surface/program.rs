@@ -325,25 +325,3 @@ fn fails(folder: &TempDir, arguments: &[&str], code: i32, message: &str) {
     assert!(stderr.contains(message), "{arguments:?}: {stderr}");
     assert!(output.stdout.is_empty());
 }
-
-#[test]
-fn horizons_and_triangles_agree_on_undersides() {
-    let folder = with_file("");
-    for formula in ["2*sin(x)*cos(1.3*y)", "4*sinc(r)", "sin(3*x)+sin(2*y)"] {
-        let under = |engine: &str| -> [f64; 2] {
-            let view = ["--samples", "25x19", "--exact", "--underside", "--eye=9,-12,1"];
-            let arguments = [&[formula, "--no-axes", "--engine", engine][..], &view].concat();
-            let (strokes, _) = drawn(&folder, &arguments);
-            let (lower, upper): (Vec<_>, Vec<_>) =
-                strokes.into_iter().partition(|stroke| stroke["side"] == "lower");
-            [upper, lower].map(|strokes| {
-                segments(&strokes).iter().map(|s| (s[2] - s[0]).hypot(s[3] - s[1])).sum()
-            })
-        };
-        let (by_horizons, by_triangles) = (under("auto"), under("roberts"));
-        for (found, expected) in by_horizons.into_iter().zip(by_triangles) {
-            assert!(expected > 1.0, "{formula}: one side is not seen: {by_triangles:?}");
-            assert!((found - expected).abs() < 1e-9 * expected, "{formula}: {by_horizons:?}");
-        }
-    }
-}
