@@ -35,9 +35,9 @@
 //!
 //! Cost: one operation for each face, with all faces before it that its box overlaps, and one for each
 //! pair that crosses or is sorted wrongly: O(n²) at worst. What overlaps is found by an index of boxes.
-//! A smooth closed mesh of 5,900 triangles takes 0.4 s on two cores, a plate of 16,700 with holes 0.6 s;
-//! hundreds of faces that pierce each other in heaps take longer, 1,400 of them more than 8 s. More than
-//! [`MOST_FACES`] are refused at once.
+//! On two busy cores, with reading and writing: a smooth closed mesh of 5,900 triangles 0.6 s, an
+//! assembly of 9,000 1.1 s, 1,400 faces that pierce each other in heaps 2.6 s. More than [`MOST_FACES`]
+//! are refused at once.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
