@@ -47,7 +47,7 @@ const SURFACE_HEIGHT: f64 = 0.4;
 /// Make a shaded picture of models
 ///
 /// Reads what `draw` reads, looks from where `draw` looks, and writes a PNG, for a look before a pen
-/// begins. All engines but the painter decide each pixel alike.
+/// begins. All engines decide each pixel alike.
 #[derive(Args)]
 #[command(after_help = EXAMPLES, mut_arg("models", |models| models.required(false)))]
 pub(super) struct PreviewArgs {

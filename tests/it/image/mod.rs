@@ -30,7 +30,7 @@ fn built(scene: &TestScene) -> (Scene, Camera) {
 }
 
 /// The face that an item is part of.
-fn face(scene: &Scene, raster: &Raster, item: u32) -> Option<u32> {
+pub(crate) fn face(scene: &Scene, raster: &Raster, item: u32) -> Option<u32> {
     (item != NOTHING).then(|| scene.triangle_faces()[raster.number(item) as usize])
 }
 
