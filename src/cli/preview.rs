@@ -161,7 +161,7 @@ enum EngineName {
     ABuffer,
     /// One ray for each pixel
     RayCast,
-    /// From far to near: wrong where faces cross or overlap in turn
+    /// Faces from far to near, cut where they cross
     Painter,
 }
 
