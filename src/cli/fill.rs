@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use glam::{DMat3, DVec2, DVec3};
@@ -16,17 +15,18 @@ use hiddenline::optimize::Options;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::read::material_colors;
 use hiddenline::scene::Scene;
-use hiddenline::stats::{Stats, timed};
+use hiddenline::stats::timed;
 use hiddenline::strokes::{Drawing, StrokeKind};
 use hiddenline::view::Camera;
 use hiddenline::writers::NoFills;
 
-use super::args::{
-    CameraArgs, ModelArgs, ModelFiles, OutputArgs, OutputOptions, PageArgs, ViewSource,
-};
-use super::draw::{read_camera, read_models, title};
-use super::paper::{Notes, Run, check_terminal};
+use super::camera::{CameraArgs, ViewSource};
+use super::models::{ModelArgs, ModelFiles};
+use super::output::{OutputArgs, OutputOptions};
+use super::page::PageArgs;
+use super::paper::{Run, check_terminal};
 use super::progress::Progress;
+use super::scene::{Subject, count};
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -264,52 +264,37 @@ impl AreaArgs {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
     check_terminal(&job.output)?;
-    if let Some(threads) = job.output.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let mut seconds = stats.seconds;
-    let progress = Progress::new(job.output.quiet);
-    progress.stage("reading");
+    let mut run = Run::start(&job.output)?;
+    let read = || job.files.read();
+    let lines = job.edges.map(|edges| edges.lines);
+    let Subject { scene, camera, notes } =
+        Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
+    run.notes = notes;
     let mut fill = job.fill.clone();
-    let (mesh, mut notes) = timed(&mut seconds.read, || read_models(&job.files))?;
     for path in &job.files.models {
         let found = material_colors(path);
         fill.materials.extend(found.colors);
-        notes.warnings.extend(found.warnings);
+        run.notes.warnings.extend(found.warnings);
     }
-    let bounds = mesh.bounds().unwrap_or_default();
-    let camera = match &job.view {
-        ViewSource::Framing(framing) => framing.camera(bounds)?,
-        ViewSource::File(path) => read_camera(path)?,
-    };
-    progress.stage("finding edges");
-    let crosses = job.edges.is_some_and(|edges| edges.lines.contains(StrokeKind::Intersection));
-    let scene = timed(&mut seconds.topology, || {
-        let scene = Scene::new(mesh);
-        if crosses { scene.with_intersections() } else { scene }
-    });
-    let prepared = timed(&mut seconds.visibility, || Prepared::new(&scene, fill.engine))?;
-    stats.seconds = seconds;
-    stats.engine = prepared.engine().name();
-    count(&mut stats, &scene);
+    let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))?;
+    run.stats.engine = prepared.engine().name();
+    count(&mut run.stats, &scene);
     let Some(n) = job.turntable else {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
-        let run = Run { output: &job.output, start, progress, stats, notes };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
+    let Run { output, start, progress, stats, mut notes } = run;
     drop(progress);
     let cameras = (0..n).map(|number| turned(&camera, f64::from(number) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
     let frame = frame(&scene, &cameras);
     let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: Some(frame) };
     for (number, camera) in (1..).zip(&cameras) {
-        let notes = if number == 1 { std::mem::take(&mut notes) } else { Notes::default() };
-        let progress = Progress::new(job.output.quiet);
-        let run = Run { output: &job.output, start, progress, stats: stats.clone(), notes };
-        let path = job.output.path.as_deref().map(|path| numbered(path, number));
+        let notes = std::mem::take(&mut notes);
+        let progress = Progress::new(output.quiet);
+        let run = Run { output, start, progress, stats: stats.clone(), notes };
+        let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;
     }
     Ok(())
@@ -338,10 +323,9 @@ impl Picture<'_> {
         let own_frame = || frame(scene, std::slice::from_ref(camera));
         let rough = Page::new(&self.frame.clone().unwrap_or_else(own_frame), camera, &job.page)?;
         options.settings.leaf = Some(job.leaf_mm / rough.mm_per_image_unit());
-        let mut seconds = run.stats.seconds;
-        let filled: Filled =
-            timed(&mut seconds.visibility, || fill_prepared(self.prepared, camera, &options))?;
-        run.stats.seconds = seconds;
+        let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
+            fill_prepared(self.prepared, camera, &options)
+        })?;
         let page = match &self.frame {
             Some(_) => rough,
             None => {
@@ -365,7 +349,7 @@ impl Picture<'_> {
             pens: job.output.plotting.pens(job.pen_width_mm),
             hidden: Default::default(),
             dash: Default::default(),
-            title: title(&job.files),
+            title: job.files.title(),
             source: source::source(config::arguments()),
         };
         let mut placed = page.plot(&edges, options).with_fills(&page, &filled, job.seam_mm);
@@ -377,15 +361,6 @@ impl Picture<'_> {
         }
         run.plot_to(path, &page.paper.description(), placed.plot, &Options::for_drawings())
     }
-}
-
-fn count(stats: &mut Stats, scene: &Scene) {
-    stats.vertices = scene.mesh().positions().len();
-    stats.faces = scene.mesh().n_faces();
-    stats.triangles = scene.triangles().len();
-    stats.edges = scene.topology().edges().len();
-    stats.intersections = scene.intersections().lines().len();
-    stats.counts.intersection_pairs = scene.intersections().n_pairs();
 }
 
 /// The rectangles around all that cameras see, as strokes.

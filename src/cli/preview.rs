@@ -13,15 +13,15 @@ use hiddenline::engines::image::Engine;
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::mesh::Mesh;
 use hiddenline::preview::{self, Options, Pixels, Show};
-use hiddenline::scene::Scene;
-use hiddenline::stats::{Stats, peak_bytes, timed};
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stats::peak_bytes;
 use hiddenline::surface::Grid;
 
-use super::args::{CameraArgs, ModelArgs, ModelFiles, ViewSource, is_dash};
-use super::draw::{read_camera, read_models};
-use super::paper::Notes;
+use super::camera::{CameraArgs, ViewSource};
+use super::models::{ModelArgs, ModelFiles};
+use super::paper::{Notes, start_threads};
+use super::paths::is_dash;
 use super::progress::Progress;
+use super::scene::Subject;
 use super::{Refused, messages, output, surface, values};
 
 const EXAMPLES: &str = "\
@@ -279,26 +279,10 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     if job.path.is_none() && io::stdout().is_terminal() {
         return Err("a picture is not for the terminal; give -o FILE".into());
     }
-    if let Some(threads) = job.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let mut seconds = stats.seconds;
+    let mut stats = start_threads(job.threads)?;
     let progress = Progress::new(job.quiet);
-    progress.stage("reading");
-    let (mesh, notes) = timed(&mut seconds.read, || job.input.mesh())?;
-    let bounds = mesh.bounds().unwrap_or_default();
-    let camera = match &job.view {
-        ViewSource::Framing(framing) => framing.camera(bounds)?,
-        ViewSource::File(path) => read_camera(path)?,
-    };
-    progress.stage("finding edges");
-    let crosses = job.edges.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
-    let scene = timed(&mut seconds.topology, || {
-        let scene = Scene::new(mesh);
-        if crosses { scene.with_intersections() } else { scene }
-    });
-    stats.seconds = seconds;
+    let Subject { scene, camera, notes } =
+        Subject::read(|| job.input.mesh(), &job.view, job.edges, &progress, &mut stats)?;
     progress.stage("drawing");
     let edges = job.edges.map(|lines| {
         let options = DrawOptions { lines, ..DrawOptions::default() };
@@ -345,7 +329,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 impl Input {
     fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         match self {
-            Self::Files(files) => read_models(files),
+            Self::Files(files) => files.read(),
             Self::Formula { formula, x, y, samples } => {
                 let mut grid = Grid::sample(formula, *x, *y, *samples)?;
                 let (low, high) =
