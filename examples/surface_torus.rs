@@ -1,11 +1,15 @@
 //! A torus by its circles; the lines at its folds close it.
 
-mod sheet;
+mod parameter_lines;
+mod plots;
+mod viewpoint;
 
 use glam::DVec3;
 use hiddenline::plot::Plot;
 
-use sheet::{Result, parametric_plot, save, seen_from};
+use parameter_lines::parametric_plot;
+use plots::{Result, save};
+use viewpoint::seen_from;
 
 pub(crate) fn plot() -> Result<Plot> {
     let point = |u: f64, v: f64| {
