@@ -7,6 +7,7 @@ mod viewpoint;
 use glam::DVec3;
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::plot::Plot;
+use hiddenline::surface::evenly;
 
 use parameter_lines::parametric_plot;
 use plots::{Result, save};
@@ -22,11 +23,9 @@ const KLEIN: [&str; 3] = [
 pub(crate) fn plot() -> Result<Plot> {
     let [x, y, z] = KLEIN.map(|text| Formula::parse(text, Variables::Parameters));
     let (x, y, z) = (x?, y?, z?);
-    let point = |u: f64, v: f64| {
-        let (u, v) = (u * std::f64::consts::TAU, v * std::f64::consts::TAU);
-        DVec3::new(x.value(u, v), y.value(u, v), z.value(u, v))
-    };
-    parametric_plot("A Klein bottle", (145, 73), 2, seen_from(20.0, 40.0), point)
+    let point = |u: f64, v: f64| DVec3::new(x.value(u, v), y.value(u, v), z.value(u, v));
+    let samples = [145, 73].map(|n| evenly(0.0, std::f64::consts::TAU, n));
+    parametric_plot("A Klein bottle", samples, 2, seen_from(20.0, 40.0), point)
 }
 
 fn main() -> Result<()> {

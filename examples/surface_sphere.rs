@@ -6,6 +6,7 @@ mod viewpoint;
 
 use glam::DVec3;
 use hiddenline::plot::Plot;
+use hiddenline::surface::evenly;
 
 use parameter_lines::parametric_plot;
 use plots::{Result, save};
@@ -17,7 +18,13 @@ pub(crate) fn plot() -> Result<Plot> {
         let r = libm::cos(latitude);
         DVec3::new(r * libm::cos(longitude), r * libm::sin(longitude), libm::sin(latitude))
     };
-    parametric_plot("Sphere", (193, 97), 4, seen_from(-60.0, 25.0), point)
+    parametric_plot(
+        "Sphere",
+        [193, 97].map(|n| evenly(0.0, 1.0, n)),
+        4,
+        seen_from(-60.0, 25.0),
+        point,
+    )
 }
 
 fn main() -> Result<()> {

@@ -6,6 +6,7 @@ mod viewpoint;
 
 use glam::DVec3;
 use hiddenline::plot::Plot;
+use hiddenline::surface::evenly;
 
 use parameter_lines::parametric_plot;
 use plots::{Result, save};
@@ -17,7 +18,13 @@ pub(crate) fn plot() -> Result<Plot> {
         let r = 3.0 + 1.2 * libm::cos(across);
         DVec3::new(r * libm::cos(around), r * libm::sin(around), 1.2 * libm::sin(across))
     };
-    parametric_plot("Torus", (217, 97), 3, seen_from(-60.0, 35.0), point)
+    parametric_plot(
+        "Torus",
+        [217, 97].map(|n| evenly(0.0, 1.0, n)),
+        3,
+        seen_from(-60.0, 35.0),
+        point,
+    )
 }
 
 fn main() -> Result<()> {

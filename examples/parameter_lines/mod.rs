@@ -9,30 +9,28 @@ use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::Drawing;
-use hiddenline::surface::{LatticeLines, LinedMesh, close_seams, evenly};
+use hiddenline::surface::{LatticeLines, LinedMesh, close_seams};
 
 use super::plots::{Result, plot_options};
 
-/// A surface in space over `n` = (u, v) samples of each unit interval, by each `every`-th line of
+/// A surface in space over all pairs of u and v, by each `every`-th line of
 /// both parameters.
 pub(crate) fn parametric_plot(
     title: &str,
-    n: (usize, usize),
+    [us, vs]: [Vec<f64>; 2],
     every: usize,
     framing: Framing,
     point: impl Fn(f64, f64) -> DVec3,
 ) -> Result<Plot> {
-    let us = evenly(0.0, 1.0, n.0);
-    let rows = evenly(0.0, 1.0, n.1);
-    let mut points: Vec<DVec3> = rows
+    let mut points: Vec<DVec3> = vs
         .iter()
         .flat_map(|&v| us.iter().map(move |&u| (u, v)))
         .map(|(u, v)| point(u, v))
         .collect();
-    close_seams(n.0, &mut points);
+    close_seams(us.len(), &mut points);
     let mut mesh = LinedMesh::default();
     let lines = LatticeLines { along_rows: true, along_columns: true, every, triangles: false };
-    mesh.push_lattice(n.0, &points, &lines);
+    mesh.push_lattice(us.len(), &points, &lines);
     let surface = mesh.into_scene()?;
     let camera = framing.camera(surface.scene.mesh().bounds().unwrap_or_default())?;
     let page = PageOptions::default();
