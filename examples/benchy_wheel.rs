@@ -1,5 +1,6 @@
 //! The steering wheel of a small boat, with the edges that it hides dashed.
 
+mod plots;
 mod sheet;
 
 use std::path::Path;
@@ -10,7 +11,8 @@ use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 pub(crate) fn plot() -> Result<Plot> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/benchy_wheel.stl");

@@ -1,5 +1,6 @@
 //! A city of boxes, seen from a helicopter.
 
+mod plots;
 mod sheet;
 
 use glam::{DVec3, dvec3};
@@ -10,7 +11,8 @@ use hiddenline::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::{PageOptions, Placement};
 use hiddenline::plot::Plot;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 const BLOCKS: i32 = 20;
 

@@ -1,20 +1,20 @@
 //! Spot, a cow, in five inks that lie beside each other, below her visible lines.
 
-mod sheet;
+mod plots;
 
 use std::path::Path;
 
 use hiddenline::arrange::{Arrangement, Pose, UpAxis};
-use hiddenline::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, fill};
 use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;
 use hiddenline::scene::Scene;
 use hiddenline::stats::Stats;
 
-use sheet::{Result, save};
+use plots::{Result, plot_options, save};
 
 /// From night to noon.
 const INKS: [[u8; 3]; 5] = [
@@ -46,15 +46,10 @@ pub(crate) fn plot() -> Result<Plot> {
         |_| page.mm_per_image_unit(),
         &mut Stats::default(),
     );
-    let pens = PlotOptions {
-        pen_width_mm: 0.3,
-        pens: Vec::new(),
-        hidden: HiddenLines::None,
-        dash: Dash::default(),
-        title: "Spot in five inks".into(),
-        source: String::new(),
-    };
-    Ok(page.plot(&edges, pens).with_fills(&page, &filled, DEFAULT_SEAM_MM).plot)
+    Ok(page
+        .plot(&edges, plot_options("Spot in five inks"))
+        .with_fills(&page, &filled, DEFAULT_SEAM_MM)
+        .plot)
 }
 
 fn main() -> Result<()> {

@@ -1,5 +1,6 @@
 //! Menger's sponge after three steps, seen from near by.
 
+mod plots;
 mod sheet;
 
 use glam::DVec3;
@@ -10,7 +11,8 @@ use hiddenline::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 const STEPS: u32 = 3;
 const SIDE: i32 = 3_i32.pow(STEPS);

@@ -1,5 +1,6 @@
 //! The five regular solids, their far edges dashed.
 
+mod plots;
 mod sheet;
 
 use glam::{DQuat, DVec3, dvec3};
@@ -10,7 +11,8 @@ use hiddenline::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::{PageOptions, Paper};
 use hiddenline::plot::Plot;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 /// The golden ratio.
 const PHI: f64 = 1.618_033_988_749_895;

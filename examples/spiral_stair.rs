@@ -1,5 +1,6 @@
 //! A spiral staircase, looking down its well.
 
+mod plots;
 mod sheet;
 
 use std::f64::consts::TAU;
@@ -13,7 +14,8 @@ use hiddenline::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::{PageOptions, Placement};
 use hiddenline::plot::Plot;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 const STEPS: u32 = 240;
 const STEPS_A_TURN: f64 = 24.0;

@@ -1,5 +1,6 @@
 //! Spot, a cow: every visible edge of her mesh.
 
+mod plots;
 mod sheet;
 
 use std::path::Path;
@@ -12,7 +13,8 @@ use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 pub(crate) fn plot() -> Result<Plot> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");

@@ -1,19 +1,18 @@
 //! A hill and a hollow over a square, by grid lines, with axes.
 
-mod sheet;
+mod plots;
 
 use glam::dvec3;
 
-use hiddenline::draw::HiddenLines;
 use hiddenline::dressing::{Titles, dress};
 use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::framing::Framing;
-use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::surface::Grid;
 
-use sheet::{Result, save};
+use plots::{Result, plot_options, save};
 
 const PEAKS: &str =
     "3*(1-x)^2*exp(-x^2-(y+1)^2) - 10*(x/5-x^3-y^5)*exp(-x^2-y^2) - exp(-(x+1)^2-y^2)/3";
@@ -33,15 +32,9 @@ pub(crate) fn plot() -> Result<Plot> {
     let mut drawing = strokes(&grid, &pieces, &camera, &Lines { every: 5, ..Lines::default() });
     let titles = Titles { drawing: "Peaks".into(), ..Titles::default() };
     dress(&mut drawing, bounds, Z_FACTOR, &camera, &titles);
-    let options = PlotOptions {
-        pen_width_mm: 0.3,
-        pens: Vec::new(),
-        hidden: HiddenLines::None,
-        dash: Dash::default(),
-        title: "Peaks".into(),
-        source: String::new(),
-    };
-    Ok(Page::new(&drawing, &camera, &PageOptions::default())?.plot(&drawing, options).plot)
+    Ok(Page::new(&drawing, &camera, &PageOptions::default())?
+        .plot(&drawing, plot_options("Peaks"))
+        .plot)
 }
 
 fn main() -> Result<()> {

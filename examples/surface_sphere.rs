@@ -1,11 +1,16 @@
 //! A sphere by meridians and circles of latitude.
 
-mod sheet;
+mod parameter_lines;
+mod plots;
+mod viewpoint;
 
 use glam::DVec3;
 use hiddenline::plot::Plot;
+use hiddenline::surface::evenly;
 
-use sheet::{Result, parametric_plot, save, seen_from};
+use parameter_lines::parametric_plot;
+use plots::{Result, save};
+use viewpoint::seen_from;
 
 pub(crate) fn plot() -> Result<Plot> {
     let point = |u: f64, v: f64| {
@@ -13,7 +18,13 @@ pub(crate) fn plot() -> Result<Plot> {
         let r = libm::cos(latitude);
         DVec3::new(r * libm::cos(longitude), r * libm::sin(longitude), libm::sin(latitude))
     };
-    parametric_plot("Sphere", (193, 97), 4, seen_from(-60.0, 25.0), point)
+    parametric_plot(
+        "Sphere",
+        [193, 97].map(|n| evenly(0.0, 1.0, n)),
+        4,
+        seen_from(-60.0, 25.0),
+        point,
+    )
 }
 
 fn main() -> Result<()> {

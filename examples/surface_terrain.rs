@@ -1,11 +1,15 @@
 //! A landscape made of smooth noise, finer and lower from octave to octave.
 
-mod sheet;
+mod grid_lines;
+mod plots;
+mod viewpoint;
 
 use hiddenline::plot::Plot;
 use hiddenline::surface::{Grid, evenly};
 
-use sheet::{Result, grid_plot, save, seen_from};
+use grid_lines::grid_plot;
+use plots::{Result, save};
+use viewpoint::seen_from;
 
 /// Cells of the coarsest octave along each axis.
 const CELLS: f64 = 3.0;

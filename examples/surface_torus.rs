@@ -1,11 +1,16 @@
 //! A torus by its circles; the lines at its folds close it.
 
-mod sheet;
+mod parameter_lines;
+mod plots;
+mod viewpoint;
 
 use glam::DVec3;
 use hiddenline::plot::Plot;
+use hiddenline::surface::evenly;
 
-use sheet::{Result, parametric_plot, save, seen_from};
+use parameter_lines::parametric_plot;
+use plots::{Result, save};
+use viewpoint::seen_from;
 
 pub(crate) fn plot() -> Result<Plot> {
     let point = |u: f64, v: f64| {
@@ -13,7 +18,13 @@ pub(crate) fn plot() -> Result<Plot> {
         let r = 3.0 + 1.2 * libm::cos(across);
         DVec3::new(r * libm::cos(around), r * libm::sin(around), 1.2 * libm::sin(across))
     };
-    parametric_plot("Torus", (217, 97), 3, seen_from(-60.0, 35.0), point)
+    parametric_plot(
+        "Torus",
+        [217, 97].map(|n| evenly(0.0, 1.0, n)),
+        3,
+        seen_from(-60.0, 35.0),
+        point,
+    )
 }
 
 fn main() -> Result<()> {

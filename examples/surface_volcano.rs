@@ -1,12 +1,16 @@
 //! A volcano with a crater and gullies down its slopes.
 
-mod sheet;
+mod grid_lines;
+mod plots;
+mod viewpoint;
 
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::plot::Plot;
 use hiddenline::surface::Grid;
 
-use sheet::{Result, grid_plot, save, seen_from};
+use grid_lines::grid_plot;
+use plots::{Result, save};
+use viewpoint::seen_from;
 
 pub(crate) fn plot() -> Result<Plot> {
     let formula = Formula::parse(

@@ -1,5 +1,6 @@
 //! A knotted tube, woven of quadrilaterals.
 
+mod plots;
 mod sheet;
 
 use std::f64::consts::TAU;
@@ -14,7 +15,8 @@ use hiddenline::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 
-use sheet::{Result, Sheet, save};
+use plots::{Result, save};
+use sheet::Sheet;
 
 const AROUND_KNOT: u32 = 360;
 const AROUND_TUBE: u32 = 18;

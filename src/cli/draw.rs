@@ -1,127 +1,110 @@
-//! `hiddenline draw`: the stages from model files to a drawing's file.
+//! `hiddenline draw`: from model files to a drawing's file.
+
+mod lines;
 
 use std::error::Error;
-use std::io;
-use std::path::Path;
-use std::time::Instant;
 
-use hiddenline::draw::draw;
-use hiddenline::mesh::{Mesh, Repairs};
+use clap::Args;
+use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::optimize::Options;
-use hiddenline::page::{Page, PlotOptions};
-use hiddenline::read::read_file;
-use hiddenline::scene::Scene;
-use hiddenline::stats::{Stats, timed};
-use hiddenline::strokes::{Drawing, StrokeKind};
-use hiddenline::view::Camera;
-use hiddenline::writers::json;
+use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::strokes::Drawing;
+use hiddenline::writers::Format;
 
-use super::args::{Job, ModelFiles, ViewSource};
-use super::paper::{Notes, Run, check_terminal};
-use super::progress::Progress;
-use super::{config, source};
+use self::lines::LineArgs;
+use super::camera::{CameraArgs, ViewSource};
+use super::models::{ModelArgs, ModelFiles};
+use super::output::{OutputArgs, OutputOptions};
+use super::page::PageArgs;
+use super::paper::{Run, check_terminal};
+use super::scene::{Subject, count};
+use super::{Refused, config, source};
+
+const EXAMPLES: &str = "\
+Examples:
+  hiddenline draw bunny.stl -o bunny.svg
+      A three-quarter view, fitted to a sheet of A4.
+  hiddenline draw part.stl --view isometric --hidden dashed --page a3 -o part.svg
+      An isometric drawing with hidden lines dashed on a layer of their own.
+  hiddenline draw house.obj --up-axis y --eye=-30,-40,12 --fov 50 -o house.png
+      A picture of what is seen from a point. Numbers may be negative.
+  hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
+      True to scale, for a model in millimetres.
+  hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
+      Two models, the second one lifted.
+  cat part.stl | hiddenline draw - --input-format stl > part.svg
+      From standard input to standard output.";
+
+/// Draw models as lines, the hidden ones removed
+///
+/// Reads OBJ, STL (text or binary), PLY and OFF, and writes SVG for print and pen plotters, PNG, or
+/// the strokes as JSON. Several models are drawn together as one scene. The drawing is exact: what
+/// hides what is decided without rounding and without tolerances.
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct DrawArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    lines: LineArgs,
+    #[command(flatten)]
+    page: PageArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// What is to be done, with nothing left to check but what depends on the files.
+pub(super) struct Job {
+    files: ModelFiles,
+    view: ViewSource,
+    draw: DrawOptions,
+    page: PageOptions,
+    pen_width_mm: f64,
+    dash: Dash,
+    output: OutputOptions,
+}
+
+impl DrawArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn job(self) -> Result<Job, Refused> {
+        let Self { model, camera, lines, page, output } = self;
+        let files = model.files()?;
+        let output = output.options(lines.exact)?;
+        let apart_by_kind = output.format == Format::Json || output.plotting.has_pens_by_kind();
+        Ok(Job {
+            files,
+            view: camera.view_source(),
+            page: page.options(),
+            pen_width_mm: page.pen_width_mm(),
+            dash: lines.dash,
+            draw: DrawOptions { apart_by_kind, ..lines.options() },
+            output,
+        })
+    }
+}
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
     check_terminal(&job.output)?;
-    if let Some(threads) = job.output.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let mut seconds = stats.seconds;
-
-    let progress = Progress::new(job.output.quiet);
-    progress.stage("reading");
-    let (mesh, notes) = timed(&mut seconds.read, || read_models(&job.files))?;
-    let bounds = mesh.bounds().unwrap_or_default();
-    let camera = match &job.view {
-        ViewSource::Framing(framing) => framing.camera(bounds)?,
-        ViewSource::File(path) => read_camera(path)?,
-    };
-    progress.stage("finding edges");
-    let asks_for_intersections = job.draw.lines.contains(StrokeKind::Intersection);
-    let scene = timed(&mut seconds.topology, || {
-        let scene = Scene::new(mesh);
-        if asks_for_intersections { scene.with_intersections() } else { scene }
-    });
-    stats.seconds = seconds;
-    progress.stage("drawing");
+    let mut run = Run::start(&job.output)?;
+    let read = || job.files.read();
+    let lines = Some(job.draw.lines);
+    let Subject { scene, camera, notes } =
+        Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
+    run.notes = notes;
+    run.progress.stage("drawing");
     // A page that cannot be made is reported when the drawing is placed on it.
     let mm_per_unit = |drawing: &Drawing| {
         Page::new(drawing, &camera, &job.page).map_or(1.0, |page| page.mm_per_image_unit())
     };
-    let drawing = draw(&scene, &camera, &job.draw, mm_per_unit, &mut stats);
-    count(&mut stats, &scene, &drawing);
+    let drawing = draw(&scene, &camera, &job.draw, mm_per_unit, &mut run.stats);
+    count(&mut run.stats, &scene);
+    run.stats.strokes = drawing.len();
+    run.stats.points = drawing.n_points();
     drop(scene);
-
-    Run { output: &job.output, start, progress, stats, notes }.draw(
-        &drawing,
-        &camera,
-        &job.page,
-        plot_options(job),
-        &Options::for_drawings(),
-    )
-}
-
-pub(super) fn read_models(files: &ModelFiles) -> Result<(Mesh, Notes), Box<dyn Error>> {
-    let mut notes = Notes::default();
-    let mut models = Vec::with_capacity(files.models.len());
-    let mut repairs = Repairs::default();
-    for (path, &pose) in files.models.iter().zip(&files.poses) {
-        let model = read_file(path, files.input_format)?;
-        notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
-        repairs += model.repairs;
-        models.push((model.mesh, pose));
-    }
-    let (mesh, arranged) = files.arrangement.arrange(models)?;
-    repairs += arranged;
-    if mesh.n_faces() == 0 {
-        return Err("no face is left; give a smaller --weld".into());
-    }
-    notes.summary = format!(
-        "{}: {} vertices, {} faces{}",
-        title(files),
-        mesh.positions().len(),
-        mesh.n_faces(),
-        described(repairs)
-    );
-    Ok((mesh, notes))
-}
-
-fn described(repairs: Repairs) -> String {
-    [
-        (repairs.welded_vertices, "equal vertices made one"),
-        (repairs.unused_vertices, "unused vertices left out"),
-        (repairs.degenerate_faces, "degenerate faces left out"),
-        (repairs.repeated_corners, "repeated corners left out"),
-    ]
-    .iter()
-    .filter(|(count, _)| *count > 0)
-    .map(|(count, what)| format!(", {count} {what}"))
-    .collect()
-}
-
-pub(super) fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
-    let failed = |error: &dyn Error| format!("{}: {error}", path.display());
-    let text = if path.as_os_str() == "-" {
-        io::read_to_string(io::stdin().lock())
-    } else {
-        std::fs::read_to_string(path)
-    };
-    let text = text.map_err(|error| failed(&error))?;
-    Ok(json::read_camera(&text).map_err(|error| failed(&error))?)
-}
-
-fn count(stats: &mut Stats, scene: &Scene, drawing: &Drawing) {
-    stats.vertices = scene.mesh().positions().len();
-    stats.faces = scene.mesh().n_faces();
-    stats.triangles = scene.triangles().len();
-    stats.edges = scene.topology().edges().len();
-    stats.intersections = scene.intersections().lines().len();
-    stats.counts.intersection_pairs = scene.intersections().n_pairs();
-    stats.strokes = drawing.len();
-    stats.points = drawing.n_points();
+    run.draw(&drawing, &camera, &job.page, plot_options(job), &Options::for_drawings())
 }
 
 fn plot_options(job: &Job) -> PlotOptions {
@@ -129,19 +112,8 @@ fn plot_options(job: &Job) -> PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: job.draw.hidden,
         dash: job.dash,
-        title: title(&job.files),
+        title: job.files.title(),
         pens: job.output.plotting.pens_for(&job.draw, job.pen_width_mm),
         source: source::source(config::arguments()),
     }
-}
-
-/// The names of the models, without folders.
-pub(super) fn title(files: &ModelFiles) -> String {
-    let name = |path: &Path| {
-        if path.as_os_str() == "-" {
-            return "standard input".to_owned();
-        }
-        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-    };
-    files.models.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
 }

@@ -1,32 +1,34 @@
 //! `hiddenline fill`: from model files to filled areas on a page.
 
+mod areas;
+
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-use clap::{Args, ValueEnum};
-use glam::{DMat3, DVec2, DVec3};
+use clap::Args;
+use glam::{DMat3, DVec2};
 use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::face::warnock::Subdivision;
-use hiddenline::engines::face::{Engine, Prepared, Settings};
+use hiddenline::engines::face::Prepared;
 use hiddenline::engines::image::raster::Corners;
-use hiddenline::fill::{DEFAULT_SEAM_MM, FillOptions, Filled, Palette, Show, fill_prepared};
+use hiddenline::fill::{FillOptions, Filled, fill_prepared};
 use hiddenline::optimize::Options;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::read::material_colors;
 use hiddenline::scene::Scene;
-use hiddenline::stats::{Stats, timed};
+use hiddenline::stats::timed;
 use hiddenline::strokes::{Drawing, StrokeKind};
 use hiddenline::view::Camera;
 use hiddenline::writers::NoFills;
 
-use super::args::{
-    CameraArgs, ModelArgs, ModelFiles, OutputArgs, OutputOptions, PageArgs, ViewSource,
-};
-use super::draw::{read_camera, read_models, title};
-use super::paper::{Notes, Run, check_terminal};
+use self::areas::AreaArgs;
+use super::camera::{CameraArgs, ViewSource};
+use super::models::{ModelArgs, ModelFiles};
+use super::output::{OutputArgs, OutputOptions};
+use super::page::PageArgs;
+use super::paper::{Run, check_terminal};
 use super::progress::Progress;
+use super::scene::{Subject, count};
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -66,52 +68,6 @@ pub(super) struct FillArgs {
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Areas")]
-struct AreaArgs {
-    /// How it is found what is seen of each face
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: EngineName,
-    /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    light: Option<DVec3>,
-    /// How much of the farthest face's color becomes paper, from 0 to 1
-    #[arg(long, value_name = "PART", value_parser = values::part, default_value_t = 0.0)]
-    depth_cue: f64,
-    /// Color of faces whose material has none
-    ///
-    /// Materials of OBJ files have the color Kd of the MTL file that is named there.
-    #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
-    #[arg(default_value = "#d8d4c8")]
-    paint: Rgb,
-    /// Use so many grays only, or these colors, as in 4 or navy,#e07020,ivory
-    ///
-    /// Each face gets the nearest one. Each ink is a layer, and inks never overlap.
-    #[arg(long, value_name = "N|COLORS", value_parser = palette)]
-    palette: Option<Palette>,
-    /// Areas beside each other instead of over each other, whatever the engine; with --palette always
-    #[arg(long)]
-    disjoint: bool,
-    /// Width of the outline, in its own color, that closes the seams around each area
-    ///
-    /// Screens and printers smooth borders, so that the paper shines through between two areas without
-    /// it. 0 leaves areas as they are, for machines that cut.
-    #[arg(long, value_name = "MM", value_parser = values::length, default_value_t = DEFAULT_SEAM_MM)]
-    seam: f64,
-    /// Color areas by what the engine did instead
-    #[arg(long, value_enum, conflicts_with = "palette")]
-    debug: Option<DebugName>,
-    /// Width of the smallest windows of warnock on paper [default: the pen's]
-    #[arg(long, value_name = "MM", value_parser = values::positive_length)]
-    leaf: Option<f64>,
-    /// How warnock divides windows
-    #[arg(long, value_enum, default_value = "regular")]
-    subdivision: SubdivisionName,
-    /// Make N pictures on the way once around the target, NAME-001 to NAME-N, all at one scale
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=999))]
-    turntable: Option<u16>,
-}
-
-#[derive(Args)]
 #[command(next_help_heading = "Edges")]
 struct EdgeArgs {
     /// Draw the visible edges on top; this is the default
@@ -130,43 +86,6 @@ struct EdgeArgs {
     crease: f64,
 }
 
-/// A color.
-type Rgb = [u8; 3];
-
-#[derive(Clone, Copy, ValueEnum)]
-enum EngineName {
-    /// Chooses by the size of the model
-    Auto,
-    /// Over each other from far to near; few splits, for models of one view
-    DepthSort,
-    /// Over each other by a tree of planes; large models, and many views of one
-    Bsp,
-    /// Over each other by a tree of boxes; large models of small faces
-    Octree,
-    /// By windows of the image down to a leaf; few, large faces
-    Warnock,
-    /// Exact regions beside each other; cutters, engravers, inks; up to 10,000 faces
-    WeilerAtherton,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum DebugName {
-    /// Blue is painted first, green, red last
-    Order,
-    /// What is nearer is lighter
-    Depth,
-    /// A color for each piece that faces were split into
-    Splits,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum SubdivisionName {
-    /// Into quarters
-    Regular,
-    /// At vertices near the middle
-    Vertices,
-}
-
 /// What is to be done.
 pub(super) struct Job {
     files: ModelFiles,
@@ -180,20 +99,6 @@ pub(super) struct Job {
     page: PageOptions,
     pen_width_mm: f64,
     output: OutputOptions,
-}
-
-/// A number of grays, or colors with commas between them.
-fn palette(text: &str) -> Result<Palette, String> {
-    if let Ok(n) = text.trim().parse::<usize>() {
-        return Ok(Palette::Grays(n));
-    }
-    // Commas within parentheses are part of a color.
-    let mut depth = 0;
-    let parts = text.split(|c| {
-        depth += i32::from(c == '(') - i32::from(c == ')');
-        c == ',' && depth == 0
-    });
-    Ok(Palette::Inks(parts.map(|part| values::rgb(part.trim())).collect::<Result<_, _>>()?))
 }
 
 impl FillArgs {
@@ -228,88 +133,39 @@ impl FillArgs {
     }
 }
 
-impl AreaArgs {
-    fn options(&self) -> FillOptions {
-        FillOptions {
-            engine: match self.engine {
-                EngineName::Auto => Engine::Auto,
-                EngineName::DepthSort => Engine::DepthSort,
-                EngineName::Bsp => Engine::Bsp,
-                EngineName::Octree => Engine::Octree,
-                EngineName::Warnock => Engine::Warnock,
-                EngineName::WeilerAtherton => Engine::WeilerAtherton,
-            },
-            settings: Settings {
-                leaf: None,
-                subdivision: match self.subdivision {
-                    SubdivisionName::Regular => Subdivision::Regular,
-                    SubdivisionName::Vertices => Subdivision::Vertices,
-                },
-            },
-            disjoint: self.disjoint,
-            show: match self.debug {
-                None => Show::Shaded,
-                Some(DebugName::Order) => Show::Order,
-                Some(DebugName::Depth) => Show::Depth,
-                Some(DebugName::Splits) => Show::Splits,
-            },
-            light: self.light,
-            depth_cue: self.depth_cue,
-            paint: Some(self.paint),
-            palette: self.palette.clone(),
-            ..FillOptions::default()
-        }
-    }
-}
-
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
     check_terminal(&job.output)?;
-    if let Some(threads) = job.output.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let mut seconds = stats.seconds;
-    let progress = Progress::new(job.output.quiet);
-    progress.stage("reading");
+    let mut run = Run::start(&job.output)?;
+    let read = || job.files.read();
+    let lines = job.edges.map(|edges| edges.lines);
+    let Subject { scene, camera, notes } =
+        Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
+    run.notes = notes;
     let mut fill = job.fill.clone();
-    let (mesh, mut notes) = timed(&mut seconds.read, || read_models(&job.files))?;
     for path in &job.files.models {
         let found = material_colors(path);
         fill.materials.extend(found.colors);
-        notes.warnings.extend(found.warnings);
+        run.notes.warnings.extend(found.warnings);
     }
-    let bounds = mesh.bounds().unwrap_or_default();
-    let camera = match &job.view {
-        ViewSource::Framing(framing) => framing.camera(bounds)?,
-        ViewSource::File(path) => read_camera(path)?,
-    };
-    progress.stage("finding edges");
-    let crosses = job.edges.is_some_and(|edges| edges.lines.contains(StrokeKind::Intersection));
-    let scene = timed(&mut seconds.topology, || {
-        let scene = Scene::new(mesh);
-        if crosses { scene.with_intersections() } else { scene }
-    });
-    let prepared = timed(&mut seconds.visibility, || Prepared::new(&scene, fill.engine))?;
-    stats.seconds = seconds;
-    stats.engine = prepared.engine().name();
-    count(&mut stats, &scene);
+    let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))?;
+    run.stats.engine = prepared.engine().name();
+    count(&mut run.stats, &scene);
     let Some(n) = job.turntable else {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
-        let run = Run { output: &job.output, start, progress, stats, notes };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
+    let Run { output, start, progress, stats, mut notes } = run;
     drop(progress);
     let cameras = (0..n).map(|number| turned(&camera, f64::from(number) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
     let frame = frame(&scene, &cameras);
     let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: Some(frame) };
     for (number, camera) in (1..).zip(&cameras) {
-        let notes = if number == 1 { std::mem::take(&mut notes) } else { Notes::default() };
-        let progress = Progress::new(job.output.quiet);
-        let run = Run { output: &job.output, start, progress, stats: stats.clone(), notes };
-        let path = job.output.path.as_deref().map(|path| numbered(path, number));
+        let notes = std::mem::take(&mut notes);
+        let progress = Progress::new(output.quiet);
+        let run = Run { output, start, progress, stats: stats.clone(), notes };
+        let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;
     }
     Ok(())
@@ -338,10 +194,9 @@ impl Picture<'_> {
         let own_frame = || frame(scene, std::slice::from_ref(camera));
         let rough = Page::new(&self.frame.clone().unwrap_or_else(own_frame), camera, &job.page)?;
         options.settings.leaf = Some(job.leaf_mm / rough.mm_per_image_unit());
-        let mut seconds = run.stats.seconds;
-        let filled: Filled =
-            timed(&mut seconds.visibility, || fill_prepared(self.prepared, camera, &options))?;
-        run.stats.seconds = seconds;
+        let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
+            fill_prepared(self.prepared, camera, &options)
+        })?;
         let page = match &self.frame {
             Some(_) => rough,
             None => {
@@ -365,7 +220,7 @@ impl Picture<'_> {
             pens: job.output.plotting.pens(job.pen_width_mm),
             hidden: Default::default(),
             dash: Default::default(),
-            title: title(&job.files),
+            title: job.files.title(),
             source: source::source(config::arguments()),
         };
         let mut placed = page.plot(&edges, options).with_fills(&page, &filled, job.seam_mm);
@@ -377,15 +232,6 @@ impl Picture<'_> {
         }
         run.plot_to(path, &page.paper.description(), placed.plot, &Options::for_drawings())
     }
-}
-
-fn count(stats: &mut Stats, scene: &Scene) {
-    stats.vertices = scene.mesh().positions().len();
-    stats.faces = scene.mesh().n_faces();
-    stats.triangles = scene.triangles().len();
-    stats.edges = scene.topology().edges().len();
-    stats.intersections = scene.intersections().lines().len();
-    stats.counts.intersection_pairs = scene.intersections().n_pairs();
 }
 
 /// The rectangles around all that cameras see, as strokes.

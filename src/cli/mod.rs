@@ -1,17 +1,21 @@
 //! The command line: typed arguments to a validated job, and the job to a file.
 
-mod args;
+mod camera;
 mod config;
 mod draw;
 mod fill;
 mod machine;
 mod messages;
+mod models;
 mod optimize;
 mod output;
+mod page;
 mod paper;
+mod paths;
 mod plotting;
 mod preview;
 mod progress;
+mod scene;
 mod source;
 mod surface;
 mod values;
@@ -24,7 +28,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use self::args::DrawArgs;
+use self::draw::DrawArgs;
 use self::fill::FillArgs;
 use self::optimize::OptimizeArgs;
 use self::preview::PreviewArgs;

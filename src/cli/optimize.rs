@@ -3,18 +3,17 @@
 use std::error::Error;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
 use hiddenline::line_svg;
 use hiddenline::optimize::Options;
 use hiddenline::page::Drawn;
-use hiddenline::stats::{Stats, timed};
+use hiddenline::stats::timed;
 use hiddenline::writers::Format;
 
-use super::args::{OutputArgs, OutputOptions, is_dash};
+use super::output::{OutputArgs, OutputOptions};
 use super::paper::{Notes, Run, check_terminal};
-use super::progress::Progress;
+use super::paths::{is_dash, title};
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -79,26 +78,19 @@ impl OptimizeArgs {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
     check_terminal(&job.output)?;
     if is_dash(&job.file) && io::stdin().is_terminal() {
         return Err("standard input is the terminal; give a file, or send an SVG to it".into());
     }
-    if let Some(threads) = job.output.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let progress = Progress::new(job.output.quiet);
-    progress.stage("reading");
+    let mut run = Run::start(&job.output)?;
+    run.progress.stage("reading");
     let name = title(&job.file);
-    let mut read_seconds = 0.0;
-    let read = timed(&mut read_seconds, || -> Result<_, Box<dyn Error>> {
+    let read = timed(&mut run.stats.seconds.read, || -> Result<_, Box<dyn Error>> {
         let text = read_text(&job.file).map_err(|error| format!("{name}: {error}"))?;
         let options =
             line_svg::Options { tolerance_mm: job.tolerance_mm, ..line_svg::Options::default() };
         Ok(line_svg::read(&text, &options).map_err(|error| format!("{name}: {error}"))?)
     })?;
-    stats.seconds.read = read_seconds;
     let mut plot = read.plot;
     for rule in job.output.plotting.pens(hiddenline::page::DEFAULT_PEN_WIDTH_MM) {
         let mut lines = hiddenline::plot::Polylines::default();
@@ -118,15 +110,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         plot.title = name.clone();
     }
     plot.source = source::source(config::arguments());
-    stats.strokes = plot.layers.iter().map(|layer| layer.lines.len()).sum();
-    stats.points = plot.layers.iter().map(|layer| layer.lines.n_points()).sum();
-    let notes = Notes {
+    run.stats.strokes = plot.layers.iter().map(|layer| layer.lines.len()).sum();
+    run.stats.points = plot.layers.iter().map(|layer| layer.lines.n_points()).sum();
+    run.notes = Notes {
         warnings: read.warnings.into_iter().collect(),
-        summary: format!("{name}: {} strokes, {} points", stats.strokes, stats.points),
+        summary: format!("{name}: {} strokes, {} points", run.stats.strokes, run.stats.points),
     };
     let paper = format!("{} x {} mm", tenths(plot.width_mm), tenths(plot.height_mm));
     let usual = Options { shortest_mm: job.shortest_mm, ..Options::default() };
-    Run { output: &job.output, start, progress, stats, notes }.plot(&paper, plot, &usual)
+    run.plot(&paper, plot, &usual)
 }
 
 fn tenths(mm: f64) -> f64 {
@@ -141,11 +133,4 @@ fn read_text(path: &Path) -> Result<String, Box<dyn Error>> {
         bytes = std::fs::read(path)?;
     }
     Ok(String::from_utf8(bytes).map_err(|_| "not a readable SVG: the text is not UTF-8")?)
-}
-
-fn title(path: &Path) -> String {
-    if is_dash(path) {
-        return "standard input".to_owned();
-    }
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

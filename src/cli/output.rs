@@ -1,64 +1,166 @@
-//! Where results go: a file that appears whole or not at all, or standard output.
+//! The output: where the drawing goes, in what format, and what is told on the way.
 
-use std::fs;
-use std::io::{self, BufWriter, Write};
+mod file;
+
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use clap::{Args, ValueEnum};
+use hiddenline::writers::Format;
+use hiddenline::writers::png::{Marks, Resolution};
+use hiddenline::writers::svg::StrokeElement;
 
-const BUFFER_BYTES: usize = 1 << 18;
+pub(super) use self::file::{write_to_file, write_to_stdout};
+use super::machine::Target;
+use super::paths::is_dash;
+use super::plotting::{PlotArgs, Plotting};
+use super::{Refused, values};
 
-/// Writes to standard output.
-pub(super) fn write_to_stdout<E: From<io::Error>>(
-    write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
-) -> Result<(), E> {
-    let mut out = BufWriter::with_capacity(BUFFER_BYTES, io::stdout().lock());
-    write(&mut out)?;
-    Ok(out.flush()?)
+#[derive(Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct OutputArgs {
+    /// File to write, its format given by the extension; `-` is standard output
+    ///
+    /// .svg; .hpgl, .plt; .gcode, .nc, .ngc; .pdf; .dxf; .png; .json
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Format of the output [default: by extension; svg on standard output]
+    #[arg(long, value_enum)]
+    format: Option<FormatName>,
+    /// Element that a stroke is written as in SVG
+    #[arg(long, value_name = "ELEMENT", value_enum, default_value = "path")]
+    svg_element: SvgElement,
+    /// Pixels per inch of a PNG [default: 150]
+    #[arg(long, value_parser = values::positive, conflicts_with = "png_width")]
+    dpi: Option<f64>,
+    /// Pixels from left to right of a PNG
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..))]
+    png_width: Option<u32>,
+    /// Show in a PNG how the pens go: travel, order, or both with a comma between them
+    ///
+    /// travel: the ways with the pen up, as thin red lines; order: strokes from blue for the first by
+    /// green to red for the last.
+    #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
+    png_show: Vec<PngMark>,
+    /// Threads to work with [default: all]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print counts and times as JSON, the last line on standard error
+    #[arg(long)]
+    stats: bool,
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print what was done in more detail
+    #[arg(short, long)]
+    verbose: bool,
+    /// Take warnings for errors: exit with 1 and write nothing
+    #[arg(long)]
+    strict: bool,
+    /// Take the settings called NAME in the configuration files
+    #[arg(long, value_name = "NAME")]
+    preset: Option<String>,
+    #[command(flatten)]
+    plotting: PlotArgs,
 }
 
-/// Writes beside `path` and renames, so that `path` is as before until all is written.
-///
-/// Links are followed. What is no file, such as a device, is written to directly.
-pub(super) fn write_to_file<E: From<io::Error>>(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
-) -> Result<(), E> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let existing = fs::metadata(&target).ok();
-    if existing.as_ref().is_some_and(|metadata| !metadata.is_file() && !metadata.is_dir()) {
-        let mut out = BufWriter::new(fs::File::create(&target)?);
-        write(&mut out)?;
-        return Ok(out.flush()?);
-    }
-    if existing.as_ref().is_some_and(fs::Metadata::is_dir) {
-        return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
-    }
-    let beside = create_beside(&target, existing.as_ref())?;
-    let mut out = BufWriter::with_capacity(BUFFER_BYTES, beside);
-    write(&mut out)?;
-    let beside = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    beside.persist(&target).map_err(|error| error.error)?;
-    Ok(())
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatName {
+    Svg,
+    Hpgl,
+    Gcode,
+    Pdf,
+    Dxf,
+    Png,
+    Json,
 }
 
-/// A new file in the folder of `target`, with the permissions of the file it will replace.
-fn create_beside(target: &Path, existing: Option<&fs::Metadata>) -> io::Result<NamedTempFile> {
-    let folder = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".hiddenline-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // What any program asks for that creates a file; the umask is taken off by the system.
-        builder.permissions(fs::Permissions::from_mode(0o666));
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum PngMark {
+    Travel,
+    Order,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SvgElement {
+    Path,
+    Polyline,
+}
+
+/// Where the drawing goes, and what is told on the way.
+pub(super) struct OutputOptions {
+    /// `None` is standard output.
+    pub(super) path: Option<PathBuf>,
+    pub(super) format: Format,
+    pub(super) svg_element: StrokeElement,
+    pub(super) resolution: Resolution,
+    pub(super) marks: Marks,
+    pub(super) threads: Option<usize>,
+    pub(super) stats: bool,
+    pub(super) quiet: bool,
+    pub(super) verbose: bool,
+    pub(super) strict: bool,
+    pub(super) plotting: Plotting,
+    pub(super) target: Target,
+}
+
+impl OutputArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    ///
+    /// With `exact`, strokes are to be left as they are.
+    pub(super) fn options(self, exact: bool) -> Result<OutputOptions, Refused> {
+        let path = self.output.filter(|path| !is_dash(path));
+        let format = output_format(self.format, path.as_deref())?;
+        let target = self.plotting.target(format)?;
+        Ok(OutputOptions {
+            plotting: self.plotting.options(exact)?,
+            target,
+            format,
+            path,
+            svg_element: match self.svg_element {
+                SvgElement::Path => StrokeElement::Path,
+                SvgElement::Polyline => StrokeElement::Polyline,
+            },
+            marks: Marks {
+                travel: self.png_show.contains(&PngMark::Travel),
+                order: self.png_show.contains(&PngMark::Order),
+            },
+            resolution: match (self.dpi, self.png_width) {
+                (_, Some(width)) => Resolution::WidthPx(width),
+                (Some(dpi), None) => Resolution::Dpi(dpi),
+                (None, None) => Resolution::default(),
+            },
+            threads: self.threads.map(usize::from),
+            stats: self.stats,
+            quiet: self.quiet,
+            verbose: self.verbose,
+            strict: self.strict,
+        })
     }
-    let file = builder.tempfile_in(folder)?;
-    if let Some(metadata) = existing {
-        fs::set_permissions(file.path(), metadata.permissions())?;
+}
+
+fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Format, String> {
+    match (typed, path) {
+        (Some(name), _) => Ok(name.format()),
+        (None, None) => Ok(Format::Svg),
+        (None, Some(path)) => Format::from_path(path).ok_or_else(|| {
+            let known = Format::ALL.iter().flat_map(|format| format.extensions());
+            let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
+            let known = known.join(", ");
+            format!("`{}` has none of the extensions {known}; give --format", path.display())
+        }),
     }
-    Ok(file)
+}
+
+impl FormatName {
+    fn format(self) -> Format {
+        match self {
+            Self::Svg => Format::Svg,
+            Self::Hpgl => Format::Hpgl,
+            Self::Gcode => Format::Gcode,
+            Self::Pdf => Format::Pdf,
+            Self::Dxf => Format::Dxf,
+            Self::Png => Format::Png,
+            Self::Json => Format::Json,
+        }
+    }
 }

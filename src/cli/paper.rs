@@ -14,8 +14,8 @@ use hiddenline::view::Camera;
 use hiddenline::writers::png::PngError;
 use hiddenline::writers::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
-use super::args::OutputOptions;
 use super::machine::Device;
+use super::output::OutputOptions;
 use super::plotting::Finished;
 use super::progress::Progress;
 use super::{messages, output};
@@ -44,7 +44,23 @@ pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error
     Ok(())
 }
 
-impl Run<'_> {
+/// Sets how many threads work; `None` is one for each core.
+pub(super) fn start_threads(threads: Option<usize>) -> Result<Stats, Box<dyn Error>> {
+    if let Some(threads) = threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    }
+    Ok(Stats { threads: rayon::current_num_threads(), ..Stats::default() })
+}
+
+impl<'a> Run<'a> {
+    /// A run with nothing done yet.
+    pub(super) fn start(output: &'a OutputOptions) -> Result<Self, Box<dyn Error>> {
+        let start = Instant::now();
+        let stats = start_threads(output.threads)?;
+        let progress = Progress::new(output.quiet);
+        Ok(Self { output, start, progress, stats, notes: Notes::default() })
+    }
+
     /// Puts `drawing` on paper and ends the run.
     pub(super) fn draw(
         mut self,

@@ -1,28 +1,29 @@
 //! `hiddenline preview`: from model files to a shaded picture.
 
+mod picture;
+
 use std::error::Error;
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
-use glam::DVec3;
+use clap::Args;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::image::Engine;
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::mesh::Mesh;
-use hiddenline::preview::{self, Options, Pixels, Show};
-use hiddenline::scene::Scene;
-use hiddenline::stats::{Stats, peak_bytes, timed};
-use hiddenline::strokes::StrokeKind;
+use hiddenline::preview::{self, Options};
+use hiddenline::stats::peak_bytes;
 use hiddenline::surface::Grid;
 
-use super::args::{CameraArgs, ModelArgs, ModelFiles, ViewSource, is_dash};
-use super::draw::{read_camera, read_models};
-use super::paper::Notes;
+use self::picture::PictureArgs;
+use super::camera::{CameraArgs, ViewSource};
+use super::models::{ModelArgs, ModelFiles};
+use super::paper::{Notes, start_threads};
+use super::paths::is_dash;
 use super::progress::Progress;
-use super::{Refused, messages, output, surface, values};
+use super::scene::Subject;
+use super::{Refused, messages, output, surface};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -94,95 +95,6 @@ struct FormulaArgs {
     samples: (usize, usize),
 }
 
-#[derive(Args)]
-#[command(next_help_heading = "Picture")]
-struct PictureArgs {
-    /// Columns and rows
-    #[arg(long, value_name = "WxH", value_parser = values::picture_size)]
-    #[arg(default_value = "1200x900")]
-    size: (u32, u32),
-    /// How it is found what each pixel shows
-    #[arg(long, value_enum, default_value = "z-buffer")]
-    engine: EngineName,
-    /// What is shown
-    #[arg(long, value_enum, default_value = "shaded", conflicts_with = "tone")]
-    show: ShowName,
-    /// Show how light each point is, as gray from 0 to 255; nothing is white
-    #[arg(long, conflicts_with_all = ["paint", "edges"])]
-    tone: bool,
-    /// Whether faces look flat or curved
-    #[arg(long, value_enum, default_value = "flat")]
-    shading: Shading,
-    /// With smooth shading, faces that meet at more than this angle keep their edge
-    #[arg(long, value_name = "DEG", value_parser = values::crease, default_value_t = 40.0)]
-    smooth_angle: f64,
-    /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    light: Option<DVec3>,
-    /// Color of the faces
-    #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
-    #[arg(default_value = "#d8d4c8")]
-    paint: Rgb,
-    /// Color where no face is seen [default: white, but black for numbers]
-    #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
-    background: Option<Rgb>,
-    /// How much of the light behind it a face stops, from 0 to 1; for the a-buffer
-    #[arg(long, value_name = "PART", value_parser = values::part)]
-    opacity: Option<f64>,
-    /// Lay the visible lines of `draw` over it
-    #[arg(long)]
-    edges: bool,
-    /// Kinds of line for --edges, as for `draw`
-    #[arg(long, value_name = "KINDS", value_parser = values::lines, requires = "edges")]
-    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
-    lines: LineSelection,
-    /// Width of these lines in pixels
-    #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 1.5)]
-    edge_width: f64,
-    /// Show exactly the field of view instead of the whole scene
-    #[arg(long)]
-    fit_fov: bool,
-}
-
-/// A color.
-type Rgb = [u8; 3];
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum EngineName {
-    /// Keeps a depth for each pixel
-    ZBuffer,
-    /// The same with one row of memory
-    ScanLine,
-    /// Decides for spans between edges
-    Spanning,
-    /// Goes from edge to edge with the faces in order of depth
-    Watkins,
-    /// 16 samples a pixel: smooth borders, and glass with --opacity
-    ABuffer,
-    /// One ray for each pixel
-    RayCast,
-    /// Faces from far to near, cut where they cross
-    Painter,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ShowName {
-    /// Faces in the light
-    Shaded,
-    /// What is nearer is lighter
-    Depth,
-    /// A color for each face
-    Faces,
-    /// Red is right, green is up, blue is towards the viewer
-    Normals,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Shading {
-    Flat,
-    Smooth,
-}
-
 /// What is to be done.
 pub(super) struct Job {
     input: Input,
@@ -219,7 +131,6 @@ impl PreviewArgs {
         if matches!(&input, Input::Files(files) if files.models.is_empty()) {
             return Err("give models, or a surface by --expr".into());
         }
-        let name = picture.engine.to_possible_value();
         Ok(Job {
             input,
             view: camera.view_source(),
@@ -227,48 +138,9 @@ impl PreviewArgs {
             edges: picture.edges.then_some(picture.lines),
             path: output.filter(|path| !is_dash(path)),
             threads: threads.map(usize::from),
-            engine: name.map(|name| name.get_name().to_owned()).unwrap_or_default(),
+            engine: picture.engine_name(),
             stats,
             quiet,
-        })
-    }
-}
-
-impl PictureArgs {
-    fn options(&self) -> Result<Options, Refused> {
-        if self.opacity.is_some() && self.engine != EngineName::ABuffer {
-            return Err("--opacity needs --engine a-buffer".into());
-        }
-        let shows_numbers = matches!(self.show, ShowName::Faces);
-        if shows_numbers && self.engine == EngineName::ABuffer {
-            return Err("colors of faces cannot be mixed; give another --engine".into());
-        }
-        let pixels = match self.engine {
-            EngineName::ABuffer => Pixels::Shares { opacity: self.opacity.unwrap_or(1.0) },
-            EngineName::ZBuffer => Pixels::Centers(Engine::ZBuffer),
-            EngineName::ScanLine => Pixels::Centers(Engine::ScanLine),
-            EngineName::Spanning => Pixels::Centers(Engine::Spanning),
-            EngineName::Watkins => Pixels::Centers(Engine::Watkins),
-            EngineName::RayCast => Pixels::Centers(Engine::RayCast),
-            EngineName::Painter => Pixels::Centers(Engine::Painter),
-        };
-        let show = match self.show {
-            _ if self.tone => Show::Tone,
-            ShowName::Shaded => Show::Shaded,
-            ShowName::Depth => Show::Depth,
-            ShowName::Faces => Show::Faces,
-            ShowName::Normals => Show::Normals,
-        };
-        Ok(Options {
-            size: self.size,
-            pixels,
-            show,
-            smooth_deg: (self.shading == Shading::Smooth).then_some(self.smooth_angle),
-            light: self.light,
-            color: self.paint,
-            background: self.background,
-            fit_fov: self.fit_fov,
-            stroke_px: self.edge_width,
         })
     }
 }
@@ -279,26 +151,10 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     if job.path.is_none() && io::stdout().is_terminal() {
         return Err("a picture is not for the terminal; give -o FILE".into());
     }
-    if let Some(threads) = job.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let mut seconds = stats.seconds;
+    let mut stats = start_threads(job.threads)?;
     let progress = Progress::new(job.quiet);
-    progress.stage("reading");
-    let (mesh, notes) = timed(&mut seconds.read, || job.input.mesh())?;
-    let bounds = mesh.bounds().unwrap_or_default();
-    let camera = match &job.view {
-        ViewSource::Framing(framing) => framing.camera(bounds)?,
-        ViewSource::File(path) => read_camera(path)?,
-    };
-    progress.stage("finding edges");
-    let crosses = job.edges.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
-    let scene = timed(&mut seconds.topology, || {
-        let scene = Scene::new(mesh);
-        if crosses { scene.with_intersections() } else { scene }
-    });
-    stats.seconds = seconds;
+    let Subject { scene, camera, notes } =
+        Subject::read(|| job.input.mesh(), &job.view, job.edges, &progress, &mut stats)?;
     progress.stage("drawing");
     let edges = job.edges.map(|lines| {
         let options = DrawOptions { lines, ..DrawOptions::default() };
@@ -345,7 +201,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 impl Input {
     fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         match self {
-            Self::Files(files) => read_models(files),
+            Self::Files(files) => files.read(),
             Self::Formula { formula, x, y, samples } => {
                 let mut grid = Grid::sample(formula, *x, *y, *samples)?;
                 let (low, high) =

@@ -6,7 +6,6 @@ mod smoothness;
 
 use std::error::Error;
 use std::path::Path;
-use std::time::Instant;
 
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
 use hiddenline::dressing::{Titles, dress};
@@ -27,10 +26,9 @@ use self::args::{Aspect, EngineName, Levels};
 pub(super) use self::args::{SurfaceArgs, range, samples};
 use self::sheets::{Input, Surface};
 use self::smoothness::Sampled;
-use super::args::{OutputOptions, ViewSource};
-use super::draw::read_camera;
-use super::paper::{Notes, Run};
-use super::progress::Progress;
+use super::camera::ViewSource;
+use super::output::OutputOptions;
+use super::paper::Run;
 use super::{config, source};
 
 /// Drawings with at most so many points are joined again in a moment.
@@ -61,24 +59,18 @@ pub(super) struct Job {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
-    if let Some(threads) = job.output.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
-    }
-    let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-    let mut seconds = stats.seconds;
-    let progress = Progress::new(job.output.quiet);
-    progress.stage("sampling");
+    let mut run = Run::start(&job.output)?;
+    let stats = &mut run.stats;
+    run.progress.stage("sampling");
     let Sampled { surface, factor, camera, refined } =
-        timed(&mut seconds.read, || smoothness::sample(job))?;
+        timed(&mut stats.seconds.read, || smoothness::sample(job))?;
     let bounds = surface.bounds();
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
-    progress.stage("drawing");
-    stats.seconds = seconds;
+    run.progress.stage("drawing");
     let grid = surface.only_grid(job, &camera)?;
     let mut drawing = match grid {
-        Some(grid) => draw_by_grid(job, grid, &lines, &camera, &mut stats)?,
-        None => draw_by_mesh(job, &surface, factor, &lines, &camera, &mut stats)?,
+        Some(grid) => draw_by_grid(job, grid, &lines, &camera, stats)?,
+        None => draw_by_mesh(job, &surface, factor, &lines, &camera, stats)?,
     };
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
@@ -86,15 +78,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let usual = joining(&drawing, grid.is_some(), &camera);
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
-    let notes =
-        Notes { warnings: Vec::new(), summary: format!("{}: {}", title(job), surface.described()) };
-    Run { output: &job.output, start, progress, stats, notes }.draw(
-        &drawing,
-        &camera,
-        &job.page,
-        plot_options(job),
-        &usual,
-    )
+    run.notes.summary = format!("{}: {}", title(job), surface.described());
+    run.draw(&drawing, &camera, &job.page, plot_options(job), &usual)
 }
 
 /// What to do with the strokes. Those of a grid run along its lines already, in a short way from
@@ -107,14 +92,6 @@ fn joining(drawing: &Drawing, is_by_grid: bool, camera: &Camera) -> Options {
         Options { join_tolerance_mm: None, effort: Effort::None, ..usual }
     } else {
         usual
-    }
-}
-
-/// The camera that the job asks for.
-fn view_of(job: &Job, surface: &Surface) -> Result<Camera, Box<dyn Error>> {
-    match &job.view {
-        ViewSource::Framing(framing) => Ok(framing.camera(surface.bounds())?),
-        ViewSource::File(path) => read_camera(path),
     }
 }
 

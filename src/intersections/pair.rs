@@ -87,6 +87,13 @@ impl Prepared {
     }
 }
 
+/// Which corners of `own` are corners of `other`, too: bit k stands for corner k.
+#[inline]
+fn shared(own: [u32; 3], [p, q, r]: [u32; 3]) -> u32 {
+    let [a, b, c] = own.map(|x| u32::from((x == p) | (x == q) | (x == r)));
+    a | b << 1 | c << 2
+}
+
 /// Whether it is certain that two triangles share no line, as far as can be seen without exact
 /// arithmetic. Nearly all pairs of neighbors in a mesh end here, so it takes no detours.
 #[inline]
@@ -96,33 +103,13 @@ pub(super) fn are_apart(
     a: &Prepared,
     corners: [u32; 3],
 ) -> bool {
-    let [a0, a1, a2] = a.corners;
-    let [b0, b1, b2] = corners;
-    // Bit k stands for corner k.
-    let bit = |k: u32, x: u32, y: u32| u32::from(x == y) << k;
-    let of_a = bit(0, a0, b0)
-        | bit(0, a0, b1)
-        | bit(0, a0, b2)
-        | bit(1, a1, b0)
-        | bit(1, a1, b1)
-        | bit(1, a1, b2)
-        | bit(2, a2, b0)
-        | bit(2, a2, b1)
-        | bit(2, a2, b2);
+    let of_a = shared(a.corners, corners);
     if of_a.count_ones() >= 2 {
         return diagonals.is_empty();
     }
-    let of_b = bit(0, b0, a0)
-        | bit(0, b0, a1)
-        | bit(0, b0, a2)
-        | bit(1, b1, a0)
-        | bit(1, b1, a1)
-        | bit(1, b1, a2)
-        | bit(2, b2, a0)
-        | bit(2, b2, a1)
-        | bit(2, b2, a2);
+    let of_b = shared(corners, a.corners);
     let at = |corner: u32| solid.positions()[corner as usize];
-    let (p, q, r) = (at(b0), at(b1), at(b2));
+    let [p, q, r] = corners.map(at);
     let side = |plane: &QuickPlane, point: DVec3| solid.certain_side(plane, point);
     let sides = [side(&a.plane, p), side(&a.plane, q), side(&a.plane, r)];
     if is_one_side(sides, of_b) {

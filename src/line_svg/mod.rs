@@ -8,6 +8,7 @@
 //! `usvg` would resolve all of this, but rounds coordinates to `f32` and loses Inkscape's layer
 //! names; so this stands on the crates it is made of: `roxmltree`, `simplecss`, `svgtypes`, `kurbo`.
 
+mod pens;
 mod shape;
 mod style;
 
@@ -17,7 +18,8 @@ use kurbo::Affine;
 use roxmltree::{Document, Node, ParsingOptions};
 use rustc_hash::FxHashMap;
 
-use crate::plot::{Layer, Pen, Plot, Polylines};
+use crate::plot::{Pen, Plot, Polylines};
+use pens::{PenLines, numbered};
 use shape::Outline;
 use style::{Style, StyleSheet, length_attribute};
 
@@ -180,13 +182,6 @@ struct Reader<'a, 'input> {
     width_mm: f64,
     height_mm: f64,
     warnings: BTreeSet<String>,
-}
-
-/// What one pen draws, before it has a number.
-struct PenLines {
-    label: String,
-    pen: Pen,
-    lines: Polylines,
 }
 
 impl<'a, 'input> Reader<'a, 'input> {
@@ -462,45 +457,4 @@ impl<'a, 'input> Reader<'a, 'input> {
         self.pen_of.insert(key, self.pens.len() - 1);
         self.pens.len() - 1
     }
-}
-
-/// Gives each pen the number its label begins with, or the next one that is free.
-fn numbered(pens: Vec<PenLines>) -> Vec<Layer> {
-    let own_number = |label: &str| {
-        let digits: String = label
-            .trim_start_matches(['%', '!', ' '])
-            .chars()
-            .take_while(char::is_ascii_digit)
-            .collect();
-        digits.parse::<u32>().ok().filter(|&number| number > 0)
-    };
-    let mut taken: BTreeSet<u32> = BTreeSet::new();
-    let numbers: Vec<Option<u32>> = pens
-        .iter()
-        .map(|pen| own_number(&pen.label).filter(|&number| taken.insert(number)))
-        .collect();
-    let mut next = 1;
-    let mut layers = Vec::new();
-    for (pen, number) in pens.into_iter().zip(numbers) {
-        let number = number.unwrap_or_else(|| {
-            while !taken.insert(next) {
-                next += 1;
-            }
-            next
-        });
-        let named = own_number(&pen.label).is_some();
-        let start: &[char] = &['%', '!', ' ', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9'];
-        let label = if named { pen.label.trim_start_matches(start) } else { &pen.label };
-        let word = |c: char| if c.is_alphanumeric() || c == '_' || c == '-' { c } else { '-' };
-        let name: String = label.trim().chars().map(word).collect();
-        let name = if name.is_empty() { "lines".to_owned() } else { name };
-        layers.push(Layer {
-            number,
-            name,
-            pen: pen.pen,
-            lines: pen.lines,
-            fills: Default::default(),
-        });
-    }
-    layers
 }

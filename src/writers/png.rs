@@ -159,22 +159,10 @@ fn draw<'a>(
 ) {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color_rgba8(r, g, b, 255);
-    let stroke = tiny_skia::Stroke {
-        width: (width_mm * px_per_mm) as f32,
-        line_cap: LineCap::Round,
-        line_join: LineJoin::Round,
-        ..tiny_skia::Stroke::default()
-    };
+    let stroke = round_stroke((width_mm * px_per_mm) as f32);
     let mut builder = PathBuilder::new();
     for line in lines {
-        for (i, &p) in line.iter().enumerate() {
-            let p = p * px_per_mm;
-            if i == 0 {
-                builder.move_to(p.x as f32, p.y as f32);
-            } else {
-                builder.line_to(p.x as f32, p.y as f32);
-            }
-        }
+        trace(line, px_per_mm, &mut builder);
         if line.len() > 2 && line.first() == line.last() {
             builder.close();
         }
@@ -191,26 +179,36 @@ fn is_gray([r, g, b]: [u8; 3]) -> bool {
     r == g && g == b
 }
 
-/// Paints the areas of a layer one over the other.
-fn fill(fills: &Fills, px_per_mm: f64, pixmap: &mut Pixmap) {
-    let seam = tiny_skia::Stroke {
-        // With less than a pixel, what is behind shines through where two areas share one.
-        width: ((fills.seam_mm * px_per_mm) as f32).max(1.0),
+/// A stroke as pens make it.
+fn round_stroke(width_px: f32) -> tiny_skia::Stroke {
+    tiny_skia::Stroke {
+        width: width_px,
         line_cap: LineCap::Round,
         line_join: LineJoin::Round,
         ..tiny_skia::Stroke::default()
-    };
+    }
+}
+
+/// Goes along a line in pixels.
+fn trace(line: &[DVec2], px_per_mm: f64, builder: &mut PathBuilder) {
+    for (i, &p) in line.iter().enumerate() {
+        let p = p * px_per_mm;
+        if i == 0 {
+            builder.move_to(p.x as f32, p.y as f32);
+        } else {
+            builder.line_to(p.x as f32, p.y as f32);
+        }
+    }
+}
+
+/// Paints the areas of a layer one over the other.
+fn fill(fills: &Fills, px_per_mm: f64, pixmap: &mut Pixmap) {
+    // With less than a pixel, what is behind shines through where two areas share one.
+    let seam = round_stroke(((fills.seam_mm * px_per_mm) as f32).max(1.0));
     for area in fills.iter() {
         let mut builder = PathBuilder::new();
         for ring in area.rings() {
-            for (i, &p) in ring.iter().enumerate() {
-                let p = p * px_per_mm;
-                if i == 0 {
-                    builder.move_to(p.x as f32, p.y as f32);
-                } else {
-                    builder.line_to(p.x as f32, p.y as f32);
-                }
-            }
+            trace(ring, px_per_mm, &mut builder);
             builder.close();
         }
         let Some(path) = builder.finish() else { continue };

@@ -10,7 +10,9 @@ use hiddenline::surface::Placement;
 
 use super::Job;
 use super::sheets::Input;
-use crate::cli::args::{CameraArgs, OutputArgs, PageArgs};
+use crate::cli::camera::CameraArgs;
+use crate::cli::output::OutputArgs;
+use crate::cli::page::PageArgs;
 use crate::cli::{Refused, values};
 
 /// Samples along each axis, unless given.

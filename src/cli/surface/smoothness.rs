@@ -13,9 +13,9 @@ use hiddenline::page::Page;
 use hiddenline::strokes::{Drawing, StrokeKind};
 use hiddenline::view::{Camera, Projection};
 
+use super::Job;
 use super::args::EngineName;
 use super::sheets::{Input, Surface, read};
-use super::{Job, view_of};
 
 /// Most cells along an axis that one cell of the samples asked for is divided into. Kinks and cliffs
 /// are never smooth, however fine the samples.
@@ -46,7 +46,7 @@ pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
     let mut refined = 1;
     loop {
         let (surface, factor) = read(job, refined)?;
-        let camera = view_of(job, &surface)?;
+        let camera = job.view.camera(surface.bounds())?;
         let finer = finer(job, &surface, &camera, refined);
         if finer <= refined {
             return Ok(Sampled { surface, factor, camera, refined });

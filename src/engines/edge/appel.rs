@@ -70,8 +70,8 @@ use crate::classify::ViewedScene;
 use crate::predicates::CutPlane;
 use crate::visibility::Visibility;
 use ahead::cutting_edges_ahead;
+use box_join::Pairs;
 use cutting::Stars;
-use doubled::Partners;
 use near::near_triangles;
 use places::Places;
 use propagate::{Base, Levels};
@@ -136,7 +136,7 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
         starts.layers.fill(None);
     }
     let partners =
-        if settings.find_doubled { Partners::new(view, &segments) } else { Partners::default() };
+        if settings.find_doubled { doubled::partners(view, &segments) } else { Pairs::default() };
     let drawing = Drawing { view, settings, sides: &sides, partners: &partners, starts: &starts };
     let parts: Vec<(Visibility, Vec<u32>)> = segments
         .par_chunks(CHUNK)
@@ -381,7 +381,7 @@ struct Drawing<'d, 'a> {
     view: &'d ViewedScene<'a>,
     settings: &'d Settings,
     sides: &'d Sides<'a>,
-    partners: &'d Partners,
+    partners: &'d Pairs,
     starts: &'d Starts,
 }
 

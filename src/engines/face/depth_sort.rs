@@ -168,7 +168,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error
 /// The fragments of one view from far to near, cut at the near plane, without those edge-on.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`enum@Error`].
 pub fn order(scene: &Scene, camera: &Camera) -> Result<(Vec<Fragment>, Counts), Error> {
     let n_piercings = piercing::estimate(scene);
     if n_piercings > MAX_PIERCINGS * scene.triangles().len() as u64 {

@@ -22,7 +22,6 @@ use std::sync::atomic::AtomicU8;
 use rayon::prelude::*;
 
 use super::SurfaceError;
-use super::Work;
 use super::cells::{First, Part};
 use super::max_min::{bounds, parts};
 use super::pieces::{GridPieces, HIDDEN, UPPER};
@@ -81,16 +80,7 @@ pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces,
             (strip.work(), strip.found)
         })
         .collect();
-    let mut work = Work::default();
-    let mut found = Vec::new();
-    for (part_work, part_found) in done {
-        work += part_work;
-        found.extend(part_found);
-    }
-    let status = status.into_iter().map(AtomicU8::into_inner).collect();
-    let mut pieces = GridPieces::join(nx, ny, status, found);
-    pieces.work = work;
-    Ok(pieces)
+    Ok(GridPieces::of_strips(nx, ny, status, done))
 }
 
 fn lines_along_x(part: &Part, grid: &Grid, strip: &mut Strip<Grid>) {

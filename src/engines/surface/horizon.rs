@@ -13,51 +13,20 @@
 //! numbers beside them carry proven error bounds and only ever filter: where they cannot decide, the
 //! samples themselves do, exactly.
 
+mod breaks;
+mod order;
+
 use std::cmp::Ordering;
 
-use super::plan_predicates::Place;
-use super::segment::{
-    CROSSING_PRECISION, End, Line, Plane, Samples, Segment, UNIT, Vertex, filtered,
-};
+use self::breaks::left_stop;
+pub(super) use self::breaks::{Break, Kind, Stop};
+use super::segment::{End, Line, Plane, Samples, Segment, Vertex};
 use super::steps::Steps;
-
-/// Where a piece begins.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Break {
-    pub(super) u: f64,
-    /// Bound on the error of `u`.
-    pub(super) error: f64,
-    pub(super) kind: Kind,
-}
-
-/// What a break is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kind {
-    /// The strip's border, at exactly `u`.
-    Border,
-    /// The u of a sample.
-    Vertex(u32),
-    /// The crossing of two lines, both from left to right. The pieces on both sides pass through it.
-    Crossing([u32; 2], [u32; 2]),
-}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
     line: Line,
     from: Break,
-}
-
-/// A place on a segment, as a visible run reports its ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Stop {
-    /// The segment's left end.
-    Left,
-    /// The segment's right end.
-    Right,
-    /// Somewhere between.
-    Inside(Break),
-    /// At the strip's border, at exactly this u.
-    Border(f64),
 }
 
 /// Counts of work, for measuring growth.
@@ -398,197 +367,5 @@ impl Horizon {
             (Ordering::Less, _) | (_, Ordering::Less) => None,
             _ => Some((0.0, 1.0)),
         }
-    }
-
-    /// Where a break lies along u compared with a sample.
-    #[inline]
-    fn order_of<S: Samples>(&self, plane: &Plane<S>, b: Break, p: Vertex) -> Ordering {
-        if let Some(order) = filtered(b.u - p.u, b.error + plane.du) {
-            return order;
-        }
-        match b.kind {
-            Kind::Vertex(id) if id == p.id => Ordering::Equal,
-            Kind::Vertex(id) => plane.sight.order(plane.point(id), plane.point(p.id)),
-            Kind::Border => plane.sight.order_to_border(plane.point(p.id), b.u).reverse(),
-            Kind::Crossing(first, second) => plane
-                .sight
-                .order_to_crossing(
-                    plane.point(p.id),
-                    first.map(|id| plane.point(id)),
-                    second.map(|id| plane.point(id)),
-                )
-                .reverse(),
-        }
-    }
-
-    fn upward(&self, order: Ordering) -> Ordering {
-        if self.up < 0.0 { order.reverse() } else { order }
-    }
-
-    /// Whether a sample is beyond a line: `Greater` is above for the upper horizon.
-    fn point_over<S: Samples>(&mut self, plane: &Plane<S>, p: Vertex, line: &Line) -> Ordering {
-        if p.id == line.a || p.id == line.b {
-            return Ordering::Equal;
-        }
-        let error = line.error + plane.v_error(p.v);
-        if let Some(order) = filtered((p.v - line.at(p.u)) * self.up, error) {
-            return order;
-        }
-        self.work.exact += 1;
-        let [p, a, b] = [p.id, line.a, line.b].map(|id| plane.point(id));
-        self.upward(plane.sight.point_over_line(p, a, b))
-    }
-
-    fn at_border<S: Samples>(
-        &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
-        u: f64,
-    ) -> Ordering {
-        let difference = (s.line.at(u) - line.at(u)) * self.up;
-        if let Some(order) = filtered(difference, s.line.error + line.error) {
-            return order;
-        }
-        self.lines_at(plane, s, line, Place::Border(u))
-    }
-
-    fn lines_at<S: Samples>(
-        &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
-        at: Place,
-    ) -> Ordering {
-        if (s.line.a, s.line.b) == (line.a, line.b) {
-            return Ordering::Equal;
-        }
-        self.work.exact += 1;
-        let [a, b, c, d] = [s.line.a, s.line.b, line.a, line.b].map(|id| plane.point(id));
-        self.upward(plane.sight.line_over_line([a, b], [c, d], at))
-    }
-
-    fn left_end<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment, line: &Line) -> Ordering {
-        match s.left {
-            End::Vertex => self.point_over(plane, s.a(), line),
-            End::Border => self.at_border(plane, s, line, self.start),
-        }
-    }
-
-    fn right_end<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment, line: &Line) -> Ordering {
-        match s.right {
-            End::Vertex => self.point_over(plane, s.b(), line),
-            End::Border => self.at_border(plane, s, line, self.border),
-        }
-    }
-
-    /// Whether the segment is beyond a line at a break inside both.
-    #[inline]
-    fn at_break<S: Samples>(
-        &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
-        b: Break,
-    ) -> Ordering {
-        let difference = (s.line.at(b.u) - line.at(b.u)) * self.up;
-        let error = s.line.error
-            + line.error
-            + (s.line.slope - line.slope).abs() * b.error
-            + UNIT * (s.line.slope.abs() + line.slope.abs()) * b.error;
-        if let Some(order) = filtered(difference, error) {
-            return order;
-        }
-        match b.kind {
-            Kind::Border => self.lines_at(plane, s, line, Place::Border(b.u)),
-            Kind::Vertex(id) => {
-                let on_segment = id == s.line.a || id == s.line.b;
-                let on_line = id == line.a || id == line.b;
-                match (on_segment, on_line) {
-                    (true, true) => Ordering::Equal,
-                    (false, true) => {
-                        self.work.exact += 1;
-                        let [p, a, b] = [id, s.line.a, s.line.b].map(|id| plane.point(id));
-                        self.upward(plane.sight.point_over_line(p, a, b)).reverse()
-                    }
-                    (true, false) => {
-                        self.work.exact += 1;
-                        let [p, a, b] = [id, line.a, line.b].map(|id| plane.point(id));
-                        self.upward(plane.sight.point_over_line(p, a, b))
-                    }
-                    (false, false) => self.lines_at(plane, s, line, Place::Vertex(plane.point(id))),
-                }
-            }
-            Kind::Crossing(first, second) => {
-                self.work.exact += 1;
-                let points = |ids: [u32; 2]| ids.map(|id| plane.point(id));
-                let own = points([s.line.a, s.line.b]);
-                let sight = &plane.sight;
-                self.upward(sight.line_over_crossing(own, points(first), points(second)))
-            }
-        }
-    }
-
-    /// The break where a segment begins.
-    fn left_break(&self, s: &Segment, piece: &Piece, du: f64) -> Break {
-        match s.left {
-            End::Vertex => Break { u: s.line.ua, error: du, kind: Kind::Vertex(s.line.a) },
-            End::Border => piece.from,
-        }
-    }
-
-    /// Where the segment crosses a piece, between given ends of their common range.
-    fn crossing<S: Samples>(
-        &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        piece: &Piece,
-        at_start: bool,
-        next: Option<Break>,
-        at_end: bool,
-    ) -> Break {
-        let line = &piece.line;
-        let (low, low_error) = match (at_start, s.left) {
-            (true, End::Vertex) => (s.line.ua, plane.du),
-            (true, End::Border) => (self.start, 0.0),
-            (false, _) => (piece.from.u, piece.from.error),
-        };
-        let (high, high_error) = match (at_end, s.right, next) {
-            (true, End::Vertex, _) => (s.ub, plane.du),
-            (false, _, Some(next)) => (next.u, next.error),
-            _ => (self.border, 0.0),
-        };
-        let (from, to) = (s.line.at(low) - line.at(low), s.line.at(high) - line.at(high));
-        let slope = s.line.slope - line.slope;
-        let lines_error = s.line.error + line.error;
-        let t = (from / (from - to)).clamp(0.0, 1.0);
-        let width = high - low;
-        let mut u = if t.is_nan() { low + 0.5 * width } else { low + t * width };
-        // The lines' errors move the crossing by their sum over the difference of slopes, which
-        // itself has an error; interpolation rounds a few times.
-        let slope_error = 2.0 * lines_error / width.max(0.0);
-        let steep = slope.abs() - slope_error;
-        let mut error = if steep > 0.5 * slope.abs() {
-            2.0 * lines_error / steep
-                + 4.0 * UNIT * (low.abs() + high.abs())
-                + low_error
-                + high_error
-        } else {
-            f64::INFINITY
-        };
-        if error.is_nan() || error >= CROSSING_PRECISION * plane.reach() / 6.0 {
-            self.work.exact += 1;
-            let points = |ids: [u32; 2]| ids.map(|id| plane.point(id));
-            u = plane.sight.crossing_u(points([s.line.a, s.line.b]), points([line.a, line.b]));
-            error = 2.0 * f64::EPSILON * u.abs() + plane.du;
-        }
-        Break { u, error, kind: Kind::Crossing([s.line.a, s.line.b], [line.a, line.b]) }
-    }
-}
-
-fn left_stop(s: &Segment, border: f64) -> Stop {
-    match s.left {
-        End::Vertex => Stop::Left,
-        End::Border => Stop::Border(border),
     }
 }

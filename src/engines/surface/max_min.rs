@@ -51,7 +51,7 @@ use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
 use super::plan_predicates::{Sight, over_plane};
 use super::segment::Plane;
 use super::strip::Strip;
-use super::{Order, SurfaceError, Work};
+use super::{Order, SurfaceError};
 use crate::surface::{Grid, Holes};
 use crate::view::{Camera, Projection};
 
@@ -150,17 +150,7 @@ pub fn solve_in_strips(
             (strip.work(), strip.found)
         })
         .collect();
-
-    let mut work = Work::default();
-    let mut found = Vec::with_capacity(done.iter().map(|(_, found)| found.len()).sum());
-    for (strip_work, strip_found) in done {
-        work += strip_work;
-        found.extend(strip_found);
-    }
-    let status = status.into_iter().map(AtomicU8::into_inner).collect();
-    let mut pieces = GridPieces::join(nx, ny, status, found);
-    pieces.work = work;
-    Ok(pieces)
+    Ok(GridPieces::of_strips(nx, ny, status, done))
 }
 
 pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {

@@ -1,5 +1,9 @@
 //! What is visible of the lines of a grid.
 
+use std::sync::atomic::AtomicU8;
+
+use super::Work;
+
 /// Which side of the surface is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {
@@ -38,7 +42,7 @@ pub struct GridPieces {
     pub(super) status: Vec<u8>,
     /// Of partly visible edges only, by edge and then from t = 0 to 1; disjoint.
     pub(super) pieces: Vec<Piece>,
-    pub(super) work: super::Work,
+    pub(super) work: Work,
 }
 
 impl GridPieces {
@@ -53,7 +57,7 @@ impl GridPieces {
     }
 
     /// How much work it took.
-    pub fn work(&self) -> super::Work {
+    pub fn work(&self) -> Work {
         self.work
     }
 
@@ -88,6 +92,23 @@ impl GridPieces {
             }
             found
         })
+    }
+
+    /// Puts together what strips have done and found.
+    pub(super) fn of_strips(
+        nx: usize,
+        ny: usize,
+        status: Vec<AtomicU8>,
+        done: Vec<(Work, Vec<Piece>)>,
+    ) -> Self {
+        let mut work = Work::default();
+        let mut found = Vec::with_capacity(done.iter().map(|(_, found)| found.len()).sum());
+        for (strip_work, strip_found) in done {
+            work += strip_work;
+            found.extend(strip_found);
+        }
+        let status = status.into_iter().map(AtomicU8::into_inner).collect();
+        Self { work, ..Self::join(nx, ny, status, found) }
     }
 
     /// Sorts and joins what strips have found.
@@ -128,6 +149,6 @@ impl GridPieces {
             }
             first = pieces.len();
         }
-        Self { nx, ny, status, pieces, work: super::Work::default() }
+        Self { nx, ny, status, pieces, work: Work::default() }
     }
 }

@@ -8,6 +8,7 @@
 use super::super::index::{ImageIndex, Visitor};
 use super::super::rounding::{Place, Rounding};
 use super::super::segment::Segment;
+use super::box_join::Pairs;
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;
 use glam::DVec2;
@@ -20,13 +21,6 @@ const BINS: f64 = (1 << 22) as f64;
 
 /// Edges whose angle or distance is less certain than this part of a bin are looked up by place.
 const WIDEST: f64 = 0.5;
-
-/// For each drawn edge those that may be on the same line of the image.
-#[derive(Debug, Default)]
-pub(super) struct Partners {
-    starts: Vec<u32>,
-    partners: Vec<u32>,
-}
 
 /// Angle and distance of an edge's line in bins, with what they may be off.
 struct Line {
@@ -79,67 +73,50 @@ impl Line {
     }
 }
 
-impl Partners {
-    /// The pairs among `segments`. Expected O(n log n); in parallel.
-    pub(super) fn new(view: &ViewedScene, segments: &[Option<Segment>]) -> Self {
-        let rounding = Rounding::new(view);
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for point in segments.iter().flatten().flat_map(|segment| segment.image) {
-            (low, high) = (low.min(point), high.max(point));
-        }
-        let center = 0.5 * (low + high);
-        let radius = (high - low).length().max(f64::MIN_POSITIVE);
+/// For each of `segments` those that may be on the same line of the image. Expected O(n log n); in
+/// parallel.
+pub(super) fn partners(view: &ViewedScene, segments: &[Option<Segment>]) -> Pairs {
+    let rounding = Rounding::new(view);
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for point in segments.iter().flatten().flat_map(|segment| segment.image) {
+        (low, high) = (low.min(point), high.max(point));
+    }
+    let center = 0.5 * (low + high);
+    let radius = (high - low).length().max(f64::MIN_POSITIVE);
 
-        let mut filled = Filter::new(segments.len());
-        let mut loose = Vec::new();
-        let lines: Vec<Option<Line>> = segments
-            .par_iter()
-            .map(|segment| Line::new(segment.as_ref()?, &rounding, center, radius))
-            .collect();
-        for (i, line) in lines.iter().enumerate() {
-            match line {
-                Some(line) => line.for_bins(|bin| filled.add(bin)),
-                None if segments[i].is_some() => loose.push(i as u32),
-                None => {}
+    let mut filled = Filter::new(segments.len());
+    let mut loose = Vec::new();
+    let lines: Vec<Option<Line>> = segments
+        .par_iter()
+        .map(|segment| Line::new(segment.as_ref()?, &rounding, center, radius))
+        .collect();
+    for (i, line) in lines.iter().enumerate() {
+        match line {
+            Some(line) => line.for_bins(|bin| filled.add(bin)),
+            None if segments[i].is_some() => loose.push(i as u32),
+            None => {}
+        }
+    }
+    let mut members: Vec<(u64, u32)> = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let Some(line) = line else { continue };
+        line.for_bins(|bin| {
+            if filled.has_several(bin) {
+                members.push((bin, i as u32));
             }
-        }
-        let mut members: Vec<(u64, u32)> = Vec::new();
-        for (i, line) in lines.iter().enumerate() {
-            let Some(line) = line else { continue };
-            line.for_bins(|bin| {
-                if filled.has_several(bin) {
-                    members.push((bin, i as u32));
-                }
-            });
-        }
-        members.par_sort_unstable();
-        let bins: Vec<&[(u64, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
-        let mut pairs: Vec<(u32, u32)> = bins
-            .par_iter()
-            .filter(|bin| bin.len() > 1)
-            .flat_map_iter(|bin| pairs_in_bin(view, segments, &rounding, bin))
-            .collect();
-        pairs.extend(pairs_by_place(view, segments, &loose));
-        pairs.par_sort_unstable();
-        pairs.dedup();
-
-        let mut starts = vec![0u32; segments.len() + 1];
-        for &(first, _) in &pairs {
-            starts[first as usize + 1] += 1;
-        }
-        for i in 0..segments.len() {
-            starts[i + 1] += starts[i];
-        }
-        Self { starts, partners: pairs.into_iter().map(|(_, second)| second).collect() }
+        });
     }
-
-    /// The numbers of the segments that may share a part of the image of one of them.
-    pub(super) fn of(&self, segment: usize) -> &[u32] {
-        match self.starts.get(segment..segment + 2) {
-            Some(&[start, end]) => &self.partners[start as usize..end as usize],
-            _ => &[],
-        }
-    }
+    members.par_sort_unstable();
+    let bins: Vec<&[(u64, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
+    let mut pairs: Vec<(u32, u32)> = bins
+        .par_iter()
+        .filter(|bin| bin.len() > 1)
+        .flat_map_iter(|bin| pairs_in_bin(view, segments, &rounding, bin))
+        .collect();
+    pairs.extend(pairs_by_place(view, segments, &loose));
+    pairs.par_sort_unstable();
+    pairs.dedup();
+    Pairs::new(segments.len(), pairs)
 }
 
 /// Which bins hold several edges, by a hash; now and then it says so of one with a single edge.

@@ -19,54 +19,82 @@ pub(super) fn covers_beyond(
     end: usize,
     triangle: u32,
 ) -> [i32; 2] {
-    const NONE: [i32; 2] = [0; 2];
-    let corners = view.scene().triangles()[triangle as usize];
-    let turn = view.triangle_turns()[triangle as usize];
-    let sight = view.sight();
-    let (here, there) = (ends[end], ends[1 - end]);
-    let is_corner = corners.contains(&here);
-    if is_corner && corners.contains(&there) {
-        return NONE;
-    }
-    let plane = sight.triangle_plane(corners);
-    let behind = |x| sight.depth_at(&plane, corners, x).1.times(turn);
-    match if is_corner { Sign::Zero } else { behind(here) } {
-        Sign::Negative => return NONE,
-        Sign::Zero if behind(there) != Sign::Positive => return NONE,
-        _ => {}
-    }
-    sides_beyond(view, ends, end, triangle)
+    let beyond = Beyond::new(view, ends, end, triangle);
+    if beyond.is_behind() { beyond.sides() } else { NONE }
 }
 
-/// Whether the segment's image just beyond `ends[end]` lies in a triangle's: one for each side.
-fn sides_beyond(view: &ViewedScene, ends: [u32; 2], end: usize, triangle: u32) -> [i32; 2] {
-    const NONE: [i32; 2] = [0; 2];
-    let corners = view.scene().triangles()[triangle as usize];
-    let turn = view.triangle_turns()[triangle as usize];
-    let sight = view.sight();
-    let (here, there) = (ends[end], ends[1 - end]);
-    let is_corner = corners.contains(&here);
-    let mut along = None;
-    for side in 0..3 {
-        let (p, q) = (corners[side], corners[(side + 1) % 3]);
-        if is_corner && p != here && q != here {
-            continue; // The vertex lies on the inner side of the one opposite.
-        }
-        let plane = sight.sight_plane(p, q);
-        let inside = |x| sight.turn_at(&plane, p, q, x).1.times(turn);
-        match inside(here) {
-            Sign::Negative => return NONE,
-            Sign::Positive => {}
-            Sign::Zero => match inside(there) {
-                Sign::Negative => return NONE,
-                Sign::Positive => {}
-                Sign::Zero => along = Some(side),
-            },
+/// On neither side.
+const NONE: [i32; 2] = [0; 2];
+
+/// A segment just beyond its end `here`, on the way `there`, and a triangle.
+struct Beyond<'v> {
+    view: &'v ViewedScene<'v>,
+    ends: [u32; 2],
+    here: u32,
+    there: u32,
+    corners: [u32; 3],
+    turn: Sign,
+    /// Whether `here` is one of the triangle's corners.
+    is_corner: bool,
+}
+
+impl<'v> Beyond<'v> {
+    fn new(view: &'v ViewedScene, ends: [u32; 2], end: usize, triangle: u32) -> Self {
+        let corners = view.scene().triangles()[triangle as usize];
+        let here = ends[end];
+        Self {
+            view,
+            ends,
+            here,
+            there: ends[1 - end],
+            corners,
+            turn: view.triangle_turns()[triangle as usize],
+            is_corner: corners.contains(&here),
         }
     }
-    match along {
-        Some(side) => side_of(view, ends, corners[(side + 2) % 3]).counts(),
-        None => Sides::Both.counts(),
+
+    /// Whether the segment is behind the triangle's plane there.
+    fn is_behind(&self) -> bool {
+        let Self { here, there, corners, turn, is_corner, .. } = *self;
+        if is_corner && corners.contains(&there) {
+            return false;
+        }
+        let sight = self.view.sight();
+        let plane = sight.triangle_plane(corners);
+        let behind = |x| sight.depth_at(&plane, corners, x).1.times(turn);
+        match if is_corner { Sign::Zero } else { behind(here) } {
+            Sign::Negative => false,
+            Sign::Zero => behind(there) == Sign::Positive,
+            Sign::Positive => true,
+        }
+    }
+
+    /// Whether the segment's image lies in the triangle's there: one for each side.
+    fn sides(&self) -> [i32; 2] {
+        let Self { view, ends, here, there, corners, turn, is_corner } = *self;
+        let sight = view.sight();
+        let mut along = None;
+        for side in 0..3 {
+            let (p, q) = (corners[side], corners[(side + 1) % 3]);
+            if is_corner && p != here && q != here {
+                continue; // The vertex lies on the inner side of the one opposite.
+            }
+            let plane = sight.sight_plane(p, q);
+            let inside = |x| sight.turn_at(&plane, p, q, x).1.times(turn);
+            match inside(here) {
+                Sign::Negative => return NONE,
+                Sign::Positive => {}
+                Sign::Zero => match inside(there) {
+                    Sign::Negative => return NONE,
+                    Sign::Positive => {}
+                    Sign::Zero => along = Some(side),
+                },
+            }
+        }
+        match along {
+            Some(side) => side_of(view, ends, corners[(side + 2) % 3]).counts(),
+            None => Sides::Both.counts(),
+        }
     }
 }
 
@@ -87,7 +115,7 @@ pub(super) fn is_plain(view: &ViewedScene, stars: &Stars, vertex: u32) -> bool {
     let Some(other) = corners.into_iter().find(|&corner| corner != vertex) else { return false };
     let mut layers = [0; 2];
     for &triangle in around {
-        add(&mut layers, sides_beyond(view, [vertex, other], 0, triangle));
+        add(&mut layers, Beyond::new(view, [vertex, other], 0, triangle).sides());
     }
     layers == [1; 2]
 }

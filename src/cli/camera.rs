@@ -1,0 +1,147 @@
+//! Where the camera stands, by options or by a file.
+
+use std::error::Error;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use hiddenline::framing::{
+    DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, NamedView, ProjectionKind, Standpoint,
+};
+use hiddenline::view::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR};
+use hiddenline::writers::json;
+
+use super::paths::is_dash;
+use super::values;
+
+#[derive(Args)]
+#[command(next_help_heading = "Camera")]
+pub(super) struct CameraArgs {
+    /// Where the observer stands
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    eye: Option<DVec3>,
+    /// The point looked at [default: the middle of the bounding box]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    target: Option<DVec3>,
+    /// What is up on the page [default: 0,0,1, or 0,1,0 when looking along z]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    up: Option<DVec3>,
+    /// Degrees around the vertical: 0 from the front, 90 from the right [default: 30]
+    #[arg(long, value_name = "DEG", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["eye", "view"])]
+    azimuth: Option<f64>,
+    /// Degrees above the horizontal [default: 25]
+    #[arg(long, value_name = "DEG", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["eye", "view"])]
+    elevation: Option<f64>,
+    /// Distance from target to eye [default: the whole scene in view]
+    #[arg(long, value_name = "D", value_parser = values::positive, conflicts_with = "eye")]
+    distance: Option<f64>,
+    /// A view with a name, orthographic unless --projection says otherwise
+    #[arg(long, value_enum, conflicts_with = "eye")]
+    view: Option<View>,
+    /// How rays of sight run [default: perspective, but orthographic with --view]
+    #[arg(long, value_enum)]
+    projection: Option<ProjectionName>,
+    /// Vertical field of view in degrees
+    ///
+    /// It says how far away an automatic camera stands and what --fit-fov shows, nothing else.
+    #[arg(long, value_name = "DEG", value_parser = values::field_of_view)]
+    #[arg(default_value_t = DEFAULT_FOV_DEG)]
+    fov: f64,
+    /// Place of the near plane, as a part of the way from eye to target
+    #[arg(long, value_name = "PART", value_parser = values::positive)]
+    #[arg(default_value_t = DEFAULT_NEAR)]
+    near: f64,
+    /// Take the camera of a strokes file (--format json)
+    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with_all = ["eye", "target", "up", "azimuth", "elevation", "distance", "view",
+        "projection", "fov", "near"])]
+    camera: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy)]
+struct View(NamedView);
+
+impl ValueEnum for View {
+    fn value_variants<'a>() -> &'a [Self] {
+        const VIEWS: [View; 9] = {
+            let mut views = [View(NamedView::Front); 9];
+            let mut i = 0;
+            while i < views.len() {
+                views[i] = View(NamedView::ALL[i]);
+                i += 1;
+            }
+            views
+        };
+        &VIEWS
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(clap::builder::PossibleValue::new(self.0.name()))
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ProjectionName {
+    Perspective,
+    Orthographic,
+}
+
+/// Where the camera comes from.
+pub(super) enum ViewSource {
+    /// A strokes file.
+    File(PathBuf),
+    /// Options.
+    Framing(Framing),
+}
+
+impl CameraArgs {
+    pub(super) fn view_source(self) -> ViewSource {
+        if let Some(path) = self.camera {
+            return ViewSource::File(path);
+        }
+        let standpoint = match (self.eye, self.view) {
+            (Some(eye), _) => Standpoint::Eye(eye),
+            (None, Some(View(view))) => Standpoint::Named { view, distance: self.distance },
+            (None, None) => Standpoint::Angles {
+                azimuth_deg: self.azimuth.unwrap_or(DEFAULT_AZIMUTH_DEG),
+                elevation_deg: self.elevation.unwrap_or(DEFAULT_ELEVATION_DEG),
+                distance: self.distance,
+            },
+        };
+        ViewSource::Framing(Framing {
+            standpoint,
+            target: self.target,
+            up: self.up,
+            projection: self.projection.map(|name| match name {
+                ProjectionName::Perspective => ProjectionKind::Perspective,
+                ProjectionName::Orthographic => ProjectionKind::Orthographic,
+            }),
+            fov_deg: self.fov,
+            near: self.near,
+        })
+    }
+}
+
+impl ViewSource {
+    /// The camera, for a scene with these least and greatest coordinates.
+    pub(super) fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, Box<dyn Error>> {
+        match self {
+            Self::File(path) => read_camera(path),
+            Self::Framing(framing) => Ok(framing.camera(bounds)?),
+        }
+    }
+}
+
+fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
+    let failed = |error: &dyn Error| format!("{}: {error}", path.display());
+    let text = if is_dash(path) {
+        io::read_to_string(io::stdin().lock())
+    } else {
+        std::fs::read_to_string(path)
+    };
+    let text = text.map_err(|error| failed(&error))?;
+    Ok(json::read_camera(&text).map_err(|error| failed(&error))?)
+}

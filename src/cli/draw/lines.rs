@@ -1,0 +1,99 @@
+//! Which lines are drawn, and how.
+
+use clap::{Args, ValueEnum};
+use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
+use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
+use hiddenline::engines::edge::Engine;
+use hiddenline::page::Dash;
+
+use crate::cli::values;
+
+#[derive(Args)]
+#[command(next_help_heading = "Lines")]
+pub(super) struct LineArgs {
+    /// Kinds of line to draw, with commas between them
+    ///
+    /// silhouette: between a front and a back face; crease: where faces meet at more than --crease;
+    /// boundary: on one face only; nonmanifold: on three faces or more; intersection: where faces
+    /// pierce each other; material: where groups or materials change; mesh, all: every edge of the
+    /// mesh. An edge to which several kinds apply is drawn when any of them is named.
+    /// outline: the parts of silhouette, boundary and nonmanifold edges beside which nothing but the
+    /// background is seen; named with other kinds it has a pen of its own, twice as wide.
+    #[arg(long, value_name = "KINDS", value_parser = values::lines, verbatim_doc_comment)]
+    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
+    lines: LineSelection,
+    /// Faces that meet at more than this angle make a crease
+    #[arg(long, value_name = "DEG", value_parser = values::crease)]
+    #[arg(default_value_t = DEFAULT_CREASE_DEG)]
+    crease: f64,
+    /// What becomes of hidden lines; if drawn, they are on their own layer [default: none]
+    #[arg(long, value_enum)]
+    hidden: Option<Hidden>,
+    /// Draw hidden lines that are covered at most N times, each number on its own layer
+    ///
+    /// Every triangle in front of a line counts, so a solid body counts twice: its front and its
+    /// back. The lines are dashed unless --hidden solid is given; --pen hidden1=…, hidden2=… are
+    /// their pens.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=99))]
+    hidden_levels: Option<u32>,
+    /// Lengths of dashes and gaps of hidden lines
+    #[arg(long, value_name = "DASH,GAP", value_parser = values::dash, default_value = "2.5,1.25")]
+    pub(super) dash: Dash,
+    /// How hidden lines are found; all engines give the same drawing
+    #[arg(long, value_enum, default_value = "auto")]
+    engine: EngineName,
+    /// Faces do not hide lines that lie this close to their plane, in model units
+    ///
+    /// Meant for parts that touch, but not exactly. The default is about what single precision
+    /// makes of the largest coordinate; 0 turns it off.
+    #[arg(long, value_name = "D", value_parser = values::not_negative)]
+    contact_tolerance: Option<f64>,
+    /// Visible strokes shorter than this on paper are dropped, such gaps in a line are closed
+    #[arg(long, value_name = "MM", value_parser = values::not_negative)]
+    #[arg(default_value_t = DEFAULT_SHORTEST_STROKE_MM)]
+    shortest_stroke: f64,
+    /// Draw what is exactly visible: one stroke for each visible interval of each edge
+    ///
+    /// Nothing is joined, dropped, dashed or drawn once for two: for comparisons, not for pens.
+    #[arg(long, conflicts_with = "contact_tolerance")]
+    pub(super) exact: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Hidden {
+    None,
+    Dashed,
+    Solid,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EngineName {
+    Auto,
+    Roberts,
+    Appel,
+}
+
+impl LineArgs {
+    pub(super) fn options(&self) -> DrawOptions {
+        DrawOptions {
+            lines: self.lines,
+            crease_deg: self.crease,
+            hidden: match self.hidden {
+                None | Some(Hidden::None) if self.hidden_levels.is_none() => HiddenLines::None,
+                Some(Hidden::Solid) => HiddenLines::Solid,
+                _ if self.exact => HiddenLines::Solid,
+                _ => HiddenLines::Dashed,
+            },
+            hidden_levels: self.hidden_levels,
+            exact: self.exact,
+            engine: match self.engine {
+                EngineName::Auto => Engine::Auto,
+                EngineName::Roberts => Engine::Roberts,
+                EngineName::Appel => Engine::Appel,
+            },
+            contact_tolerance: self.contact_tolerance,
+            shortest_stroke_mm: self.shortest_stroke,
+            apart_by_kind: false,
+        }
+    }
+}

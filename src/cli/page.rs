@@ -1,0 +1,80 @@
+//! The page: its size, and how large the drawing is on it.
+
+use clap::{Args, ValueEnum};
+use hiddenline::page::{
+    DEFAULT_MARGIN_MM, DEFAULT_PEN_WIDTH_MM, Orientation, PageOptions, Paper, Placement,
+};
+
+use super::values;
+
+#[derive(Args)]
+#[command(next_help_heading = "Page")]
+pub(super) struct PageArgs {
+    /// a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
+    ///
+    /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
+    #[arg(long, value_name = "SIZE", default_value = "a4")]
+    page: Paper,
+    /// Wide rather than high
+    #[arg(long, conflicts_with = "portrait")]
+    landscape: bool,
+    /// High rather than wide
+    #[arg(long)]
+    portrait: bool,
+    /// Empty border; nothing is drawn outside
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    #[arg(default_value_t = DEFAULT_MARGIN_MM)]
+    margin: f64,
+    /// Scale, as in 1:10, instead of fitting the drawing to the page
+    ///
+    /// In perspective it holds at the distance of the target.
+    #[arg(long, value_name = "1:N", value_parser = values::scale, conflicts_with = "fit_fov")]
+    drawing_scale: Option<f64>,
+    /// What a model unit is, for --drawing-scale
+    #[arg(long, value_enum, default_value = "mm")]
+    unit: LengthUnit,
+    /// Show exactly the field of view between the upper and the lower margin
+    #[arg(long)]
+    fit_fov: bool,
+    /// Width of the pen's line
+    #[arg(long, value_name = "MM", value_parser = values::positive_length)]
+    #[arg(default_value_t = DEFAULT_PEN_WIDTH_MM)]
+    pen_width: f64,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LengthUnit {
+    Mm,
+    Cm,
+    M,
+    In,
+}
+
+impl PageArgs {
+    pub(super) fn pen_width_mm(&self) -> f64 {
+        self.pen_width
+    }
+
+    pub(super) fn options(&self) -> PageOptions {
+        let unit_mm = match self.unit {
+            LengthUnit::Mm => 1.0,
+            LengthUnit::Cm => 10.0,
+            LengthUnit::M => 1000.0,
+            LengthUnit::In => 25.4,
+        };
+        PageOptions {
+            paper: self.page,
+            orientation: match (self.landscape, self.portrait) {
+                (true, _) => Some(Orientation::Landscape),
+                (_, true) => Some(Orientation::Portrait),
+                _ => None,
+            },
+            margin_mm: self.margin,
+            placement: match (self.drawing_scale, self.fit_fov) {
+                (Some(scale), _) => Placement::Scale { mm_per_unit: scale * unit_mm },
+                (None, true) => Placement::FieldOfView,
+                (None, false) => Placement::Fit,
+            },
+        }
+    }
+}

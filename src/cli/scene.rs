@@ -1,0 +1,53 @@
+//! From what is read to a scene and the camera that looks at it.
+
+use std::error::Error;
+
+use hiddenline::classify::LineSelection;
+use hiddenline::mesh::Mesh;
+use hiddenline::scene::Scene;
+use hiddenline::stats::{Stats, timed};
+use hiddenline::strokes::StrokeKind;
+use hiddenline::view::Camera;
+
+use super::camera::ViewSource;
+use super::paper::Notes;
+use super::progress::Progress;
+
+/// What is drawn: a scene, from where it is looked at, and what reading it has to tell.
+pub(super) struct Subject {
+    pub(super) scene: Scene,
+    pub(super) camera: Camera,
+    pub(super) notes: Notes,
+}
+
+impl Subject {
+    /// Reads a mesh and finds its edges, and where faces cross if `lines` ask for that.
+    pub(super) fn read(
+        mesh: impl FnOnce() -> Result<(Mesh, Notes), Box<dyn Error>>,
+        view: &ViewSource,
+        lines: Option<LineSelection>,
+        progress: &Progress,
+        stats: &mut Stats,
+    ) -> Result<Self, Box<dyn Error>> {
+        progress.stage("reading");
+        let (mesh, notes) = timed(&mut stats.seconds.read, mesh)?;
+        let camera = view.camera(mesh.bounds().unwrap_or_default())?;
+        progress.stage("finding edges");
+        let crosses = lines.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
+        let scene = timed(&mut stats.seconds.topology, || {
+            let scene = Scene::new(mesh);
+            if crosses { scene.with_intersections() } else { scene }
+        });
+        Ok(Self { scene, camera, notes })
+    }
+}
+
+/// Counts what the scene is made of.
+pub(super) fn count(stats: &mut Stats, scene: &Scene) {
+    stats.vertices = scene.mesh().positions().len();
+    stats.faces = scene.mesh().n_faces();
+    stats.triangles = scene.triangles().len();
+    stats.edges = scene.topology().edges().len();
+    stats.intersections = scene.intersections().lines().len();
+    stats.counts.intersection_pairs = scene.intersections().n_pairs();
+}
