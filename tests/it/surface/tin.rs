@@ -4,7 +4,7 @@ use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, rough};
 use glam::{DVec3, dvec3};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::surface::tin;
+use hiddenline::engines::surface::{Order, max_min, tin};
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::surface::{LatticeLines, LinedMesh, LinedScene, TrimmedGrid, delaunay};
 use hiddenline::view::{Camera, Projection};
@@ -194,4 +194,28 @@ fn what_is_no_function_over_a_convex_domain_is_left_to_mesh_engines() {
     let ring = plan(&[(0.0, 0.0), (6.0, 0.0), (3.0, 6.0), (2.0, 1.0), (4.0, 1.0), (3.0, 3.0)]);
     let blades = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
     assert!(!is_drawn(&ring, &blades), "a hole");
+}
+
+/// Large enough for the horizons' steps to be found several times.
+#[test]
+fn surfaces_of_which_most_is_passed_over_equal_all_pairs() {
+    let mut dice = Dice(14);
+    for round in 0..10 {
+        let grid = rough(&mut dice, round % 5, 24, 24);
+        let mut mesh = LinedMesh::default();
+        mesh.push_grid(&grid, &LatticeLines { triangles: false, ..ALL });
+        let surface = mesh.into_scene().expect("a scene");
+        let height = [40.0, 3.0, -25.0][dice.roll(3) as usize];
+        let eye = dvec3(-9.0 - dice.roll(40) as f64, dice.roll(60) as f64 - 5.0, height);
+        let camera = camera(eye, dvec3(24.0, 24.0, 0.0), PERSPECTIVE);
+        assert!(check(&surface, &camera, &format!("round {round}")), "round {round}: not drawn");
+
+        let view = ViewedScene::with_edges(&surface.scene, &camera, surface.lines.clone());
+        let (by_triangles, _) = tin::solve(&view).expect("pieces");
+        let by_triangles: f64 =
+            visible(&by_triangles).iter().flatten().map(|(t0, t1)| t1 - t0).sum();
+        let by_cells = max_min::solve(&grid, &camera, Order::Rows).expect("pieces");
+        let by_cells: f64 = by_cells.iter().map(|piece| piece.t1 - piece.t0).sum();
+        assert!((by_cells - by_triangles).abs() < 1e-7, "{round}: {by_cells}, {by_triangles}");
+    }
 }
