@@ -24,6 +24,34 @@ pub struct Grid {
     xs: Vec<f64>,
     ys: Vec<f64>,
     zs: Vec<f64>,
+    heights: Heights,
+}
+
+/// What all heights together are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Heights {
+    low: f64,
+    high: f64,
+    n_holes: usize,
+}
+
+impl Heights {
+    const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, n_holes: 0 };
+
+    fn of(zs: &[f64]) -> Self {
+        // `min` and `max` pass over what is not a number.
+        let add = |all: Self, z: &f64| Self {
+            low: all.low.min(*z),
+            high: all.high.max(*z),
+            n_holes: all.n_holes + usize::from(z.is_nan()),
+        };
+        let join = |a: Self, b: Self| Self {
+            low: a.low.min(b.low),
+            high: a.high.max(b.high),
+            n_holes: a.n_holes + b.n_holes,
+        };
+        zs.par_chunks(1 << 14).map(|zs| zs.iter().fold(Self::NONE, add)).reduce(|| Self::NONE, join)
+    }
 }
 
 /// Which samples of a grid have no height.
@@ -121,7 +149,8 @@ impl Grid {
         for z in &mut zs {
             *z = if z.is_finite() { *z + 0.0 } else { f64::NAN };
         }
-        Ok(Self { xs, ys, zs })
+        let heights = Heights::of(&zs);
+        Ok(Self { xs, ys, zs, heights })
     }
 
     /// Samples a formula on `n` = (along x, along y) evenly spaced lines. O(samples), in parallel.
@@ -173,20 +202,19 @@ impl Grid {
 
     /// Lowest and highest height; `None` when all samples are holes.
     pub fn heights(&self) -> Option<(f64, f64)> {
-        let range = |(low, high): (f64, f64), z: &f64| (low.min(*z), high.max(*z));
-        // `min` and `max` pass over what is not a number.
-        let (low, high) = self.zs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), range);
+        let Heights { low, high, .. } = self.heights;
         (low <= high).then_some((low, high))
     }
 
-    /// Multiplies all heights.
+    /// Multiplies all heights. O(samples).
     pub fn scale_heights(&mut self, factor: f64) {
         self.zs.iter_mut().for_each(|z| *z *= factor);
+        self.heights = Heights::of(&self.zs);
     }
 
-    /// Whether some samples have no height. O(samples).
+    /// Whether some samples have no height.
     pub fn holes(&self) -> Holes {
-        match self.zs.iter().filter(|z| z.is_nan()).count() {
+        match self.heights.n_holes {
             0 => Holes::None,
             n if n == self.zs.len() => Holes::All,
             _ => Holes::Some,

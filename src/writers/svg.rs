@@ -233,25 +233,38 @@ fn millimetres(value: f64) -> String {
 
 /// Appends `value / 1000` without trailing zeros.
 fn push_thousandths(text: &mut Vec<u8>, value: i64) {
-    if value < 0 {
-        text.push(b'-');
-    }
-    let (whole, thousandths) = (value.unsigned_abs() / 1000, value.unsigned_abs() % 1000);
-    push_integer(text, whole);
+    // A sign, a point and as many digits as such a number can have; filled from the end.
+    let mut buffer = [0; 24];
+    let mut begin = buffer.len();
+    let mut push = |digit: u8| {
+        begin -= 1;
+        buffer[begin] = digit;
+    };
+    let mut rest = value.unsigned_abs();
+    let thousandths = rest % 1000;
+    rest /= 1000;
     if thousandths > 0 {
-        let digits = [100, 10, 1].map(|unit| b'0' + (thousandths / unit % 10) as u8);
-        let n_digits =
-            if thousandths % 100 == 0 { 1 } else { 2 + usize::from(thousandths % 10 > 0) };
-        text.push(b'.');
-        text.extend(&digits[..n_digits]);
+        let [hundreds, tens, ones] = [100, 10, 1].map(|unit| (thousandths / unit % 10) as u8);
+        if ones > 0 {
+            push(b'0' + ones);
+        }
+        if ones > 0 || tens > 0 {
+            push(b'0' + tens);
+        }
+        push(b'0' + hundreds);
+        push(b'.');
     }
-}
-
-fn push_integer(text: &mut Vec<u8>, value: u64) {
-    if value >= 10 {
-        push_integer(text, value / 10);
+    loop {
+        push(b'0' + (rest % 10) as u8);
+        rest /= 10;
+        if rest == 0 {
+            break;
+        }
     }
-    text.push(b'0' + (value % 10) as u8);
+    if value < 0 {
+        push(b'-');
+    }
+    text.extend_from_slice(&buffer[begin..]);
 }
 
 /// `text` without the control characters that XML cannot hold.

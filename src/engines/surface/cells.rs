@@ -9,9 +9,10 @@
 //! ```
 
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use super::Order;
-use super::segment::{Samples, Vertex};
+use super::segment::{Cell, Diagonal, Samples, Vertex};
 use super::strip::Strip;
 use crate::surface::Grid;
 
@@ -61,6 +62,11 @@ impl Part {
         self.rows[r] * grid.xs().len() as u32 + self.columns[c]
     }
 
+    /// How the cells are cut in two: in the grid, from the corner where x and y are least.
+    fn diagonal(&self) -> Diagonal {
+        if self.sx * self.sy > 0.0 { Diagonal::NearToFar } else { Diagonal::LeftToRight }
+    }
+
     fn cells(&self) -> (usize, usize) {
         (self.columns.len() - 1, self.rows.len() - 1)
     }
@@ -88,31 +94,36 @@ impl Part {
     }
 }
 
-/// The first column of a range from which on `holds` is true, or the end of the range.
-fn first_column(mut low: usize, mut high: usize, holds: impl Fn(usize) -> bool) -> usize {
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if holds(middle) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    low
-}
-
 struct Walk<'a, 'b, 'c> {
     part: &'a Part,
     grid: &'a Grid,
     strip: &'b mut Strip<'c, Grid>,
 }
 
-/// The corners of a cell.
-struct Corners {
-    near: Vertex,
-    right: Vertex,
-    left: Vertex,
-    far: Vertex,
+/// Vertices of neighboring columns of one row.
+#[derive(Default)]
+struct Row {
+    begin: usize,
+    vertices: Vec<Vertex>,
+}
+
+impl Row {
+    /// Holds `columns`, as far as possible from `known`, which is of the same row of the grid or
+    /// empty.
+    fn fill(&mut self, known: &Self, columns: Range<usize>, vertex: impl Fn(usize) -> Vertex) {
+        let known_end = known.begin + known.vertices.len();
+        let kept = columns.start.max(known.begin)..columns.end.min(known_end);
+        self.begin = columns.start;
+        self.vertices.clear();
+        if kept.is_empty() {
+            self.vertices.extend(columns.map(vertex));
+            return;
+        }
+        let of_known = kept.start - known.begin..kept.end - known.begin;
+        self.vertices.extend((columns.start..kept.start).map(&vertex));
+        self.vertices.extend_from_slice(&known.vertices[of_known]);
+        self.vertices.extend((kept.end..columns.end).map(&vertex));
+    }
 }
 
 impl Walk<'_, '_, '_> {
@@ -122,11 +133,12 @@ impl Walk<'_, '_, '_> {
 
     fn rows(&mut self) {
         let (n_columns, n_rows) = self.part.cells();
-        let (mut near, mut far) = (Vec::new(), Vec::new());
         let first = usize::from(self.part.first_column == First::Behind);
         // Rounded u can only make the range a little too wide; segments are cut exactly.
         let margin = 4.0 * self.strip.plane.du;
         let (from, to) = (self.strip.from - margin, self.strip.to + margin);
+        let (mut near, mut far) = (Row::default(), Row::default());
+        let (mut begin, mut end) = (first, first);
         for r in 0..n_rows {
             if first == 1 {
                 self.cut_cell(0, r);
@@ -136,16 +148,22 @@ impl Walk<'_, '_, '_> {
                 continue;
             }
             let vertex = |c: usize, r: usize| self.strip.plane.vertex(self.id(c, r));
-            let begin = first_column(first, n_columns, |c| vertex(c + 1, r).u >= from);
-            let end = first_column(begin, n_columns, |c| vertex(c, r + 1).u > to);
-            near.clear();
-            far.clear();
-            near.extend((begin..=end).map(|c| vertex(c, r)));
-            far.extend((begin..=end).map(|c| vertex(c, r + 1)));
-            for (k, c) in (begin..end).enumerate() {
-                let corners =
-                    Corners { near: near[k], right: near[k + 1], left: far[k], far: far[k + 1] };
-                self.cell(c, r, &corners);
+            // u grows with the column and falls with the row, so the range only moves on.
+            while begin < n_columns && vertex(begin + 1, r).u < from {
+                begin += 1;
+            }
+            end = end.max(begin);
+            while end < n_columns && vertex(end, r + 1).u <= to {
+                end += 1;
+            }
+            // The far vertices of the row before are the near ones of this row.
+            near.fill(&far, begin..end + 1, |c| vertex(c, r));
+            far.fill(&Row::default(), begin..end + 1, |c| vertex(c, r + 1));
+            let diagonal = self.part.diagonal();
+            let pairs = near.vertices.windows(2).zip(far.vertices.windows(2));
+            for ((near, far), c) in pairs.zip(begin..end) {
+                let (&[near, right], &[left, far]) = (near, far) else { continue };
+                self.cell(c, r, &Cell { near, right, left, far, diagonal });
             }
         }
     }
@@ -162,37 +180,32 @@ impl Walk<'_, '_, '_> {
                     continue;
                 }
                 let vertex = |c, r| self.strip.plane.vertex(self.id(c, r));
-                let corners = Corners {
+                let cell = Cell {
                     near: vertex(c, r),
                     right: vertex(c + 1, r),
                     left: vertex(c, r + 1),
                     far: vertex(c + 1, r + 1),
+                    diagonal: self.part.diagonal(),
                 };
                 let margin = 4.0 * self.strip.plane.du;
-                if corners.right.u >= self.strip.from - margin
-                    && corners.left.u <= self.strip.to + margin
+                if cell.right.u >= self.strip.from - margin && cell.left.u <= self.strip.to + margin
                 {
-                    self.cell(c, r, &corners);
+                    self.cell(c, r, &cell);
                 }
             }
         }
     }
 
-    /// Whether the diagonal of the cells runs from near to far.
-    fn near_to_far(&self) -> bool {
-        self.part.sx * self.part.sy > 0.0
-    }
-
     /// A cell wholly inside the part.
-    fn cell(&mut self, c: usize, r: usize, corners: &Corners) {
-        let Corners { near, right, left, far } = *corners;
+    fn cell(&mut self, c: usize, r: usize, cell: &Cell) {
+        let Cell { near, right, left, far, .. } = *cell;
         let part = self.part;
         if (c == 0 && part.first_column != First::Beyond)
             || (r == 0 && part.first_row != First::Beyond)
             || part.radial_columns
             || part.radial_rows
         {
-            self.radial_edges(c, r, corners);
+            self.radial_edges(c, r, cell);
         }
         if c == 0 && part.first_column == First::Beyond && !part.radial_columns {
             self.draw(left, near, part.y_edge(self.grid, c, r));
@@ -200,24 +213,26 @@ impl Walk<'_, '_, '_> {
         if r == 0 && part.first_row == First::Beyond && !part.radial_rows {
             self.draw(near, right, part.x_edge(self.grid, c, r));
         }
-        if !self.strip.visit([near, right, left, far], (left.u, right.u)) {
+        let far_edges = [part.x_edge(self.grid, c, r + 1), part.y_edge(self.grid, c + 1, r)];
+        let has_no_radial = !part.radial_rows && !part.radial_columns;
+        if !self.strip.visit_cell(cell, has_no_radial.then_some(far_edges)) {
             self.strip.leave();
             return;
         }
-        let diagonal = if self.near_to_far() { (near, far) } else { (left, right) };
-        let diagonal = match self.strip.plane.order(diagonal.0, diagonal.1) {
-            Ordering::Less => self.strip.segment(diagonal.0, diagonal.1),
+        let (from, to) = cell.diagonal();
+        let diagonal = match self.strip.plane.order(from, to) {
+            Ordering::Less => self.strip.segment(from, to),
             Ordering::Equal => None,
-            Ordering::Greater => self.strip.segment(diagonal.1, diagonal.0),
+            Ordering::Greater => self.strip.segment(to, from),
         };
         if let Some(diagonal) = diagonal {
             self.strip.hide(&diagonal);
         }
         if !part.radial_rows {
-            self.draw(left, far, part.x_edge(self.grid, c, r + 1));
+            self.draw(left, far, far_edges[0]);
         }
         if !part.radial_columns {
-            self.draw(far, right, part.y_edge(self.grid, c + 1, r));
+            self.draw(far, right, far_edges[1]);
         }
         self.strip.leave();
     }
@@ -230,8 +245,8 @@ impl Walk<'_, '_, '_> {
 
     /// Tests the radial edges of a cell before the cell hides anything. An edge on the border of the
     /// domain has nothing beside it on the outer side, so it is wholly visible.
-    fn radial_edges(&mut self, c: usize, r: usize, corners: &Corners) {
-        let Corners { near, right, left, far } = *corners;
+    fn radial_edges(&mut self, c: usize, r: usize, cell: &Cell) {
+        let Cell { near, right, left, far, .. } = *cell;
         let (part, grid, cells) = (self.part, self.grid, self.part.cells());
         let strip = &mut *self.strip;
         let mut test = |(a, b): (Vertex, Vertex), edge, right_side, on_border| {
@@ -297,7 +312,10 @@ impl Walk<'_, '_, '_> {
                 _ => strip.draw_clipped(near, right, edge),
             }
         }
-        let diagonal = if part.sx * part.sy > 0.0 { (near, far) } else { (left, right) };
+        let diagonal = match part.diagonal() {
+            Diagonal::NearToFar => (near, far),
+            Diagonal::LeftToRight => (left, right),
+        };
         if let Some(diagonal) = strip.clipped(diagonal.0, diagonal.1) {
             strip.hide(&diagonal);
         }

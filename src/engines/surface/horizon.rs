@@ -13,6 +13,7 @@
 //! numbers beside them carry proven error bounds and only ever filter: where they cannot decide, the
 //! samples themselves do, exactly.
 
+mod advance;
 mod breaks;
 mod order;
 

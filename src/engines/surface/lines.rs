@@ -198,6 +198,7 @@ impl Line {
     ) -> Chains {
         let mut chains = Chains::default();
         let point = |k: usize| grid.point((self.first + k * self.step) as u32);
+        let mut q = point(0);
         let first_edge = self.edge as u32;
         let mut partial =
             pieces.pieces[pieces.pieces.partition_point(|piece| piece.edge < first_edge)..].iter();
@@ -209,8 +210,8 @@ impl Line {
             let status = pieces.status[self.edge + k];
             let mut reached = false;
             let mut last = (reaches && !lines.separate).then_some(0.0);
+            let p = std::mem::replace(&mut q, point(k + 1));
             let mut add = |piece: &Piece| {
-                let (p, q) = (point(k), point(k + 1));
                 if let Some(only) = lines.side
                     && border_side(k).unwrap_or(piece.side) != only
                 {

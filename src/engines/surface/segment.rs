@@ -34,6 +34,33 @@ pub(super) struct Vertex {
     pub(super) v: f64,
 }
 
+/// The corners of a cell of a grid and how it is cut in two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cell {
+    pub(super) near: Vertex,
+    pub(super) right: Vertex,
+    pub(super) left: Vertex,
+    pub(super) far: Vertex,
+    pub(super) diagonal: Diagonal,
+}
+
+impl Cell {
+    /// The corners that the diagonal joins.
+    pub(super) fn diagonal(&self) -> (Vertex, Vertex) {
+        match self.diagonal {
+            Diagonal::NearToFar => (self.near, self.far),
+            Diagonal::LeftToRight => (self.left, self.right),
+        }
+    }
+}
+
+/// Which corners of a cell its diagonal joins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Diagonal {
+    NearToFar,
+    LeftToRight,
+}
+
 /// The samples, how they are seen, and how far rounded u and v may be from the truth.
 pub(super) struct Plane<'a, S: Samples> {
     pub(super) samples: &'a S,

@@ -9,7 +9,7 @@ use super::Work;
 use super::horizon::{Break, Horizon, Kind, Stop};
 use super::pieces::{HIDDEN, LOWER, Piece, Side, UPPER};
 use super::plan_predicates::Place;
-use super::segment::{End, PLACE_PRECISION, Plane, Samples, Segment, Vertex};
+use super::segment::{Cell, End, PLACE_PRECISION, Plane, Samples, Segment, Vertex};
 
 /// A strip of one part of the domain, from one u to another. Strips never hide each other.
 pub(super) struct Strip<'a, S: Samples> {
@@ -20,8 +20,10 @@ pub(super) struct Strip<'a, S: Samples> {
     upper: Option<Horizon>,
     /// Absent when the eye stands above the surface within the domain.
     lower: Option<Horizon>,
-    /// Whether the cell that is visited surely lies within the upper, the lower horizon.
-    is_within: [bool; 2],
+    /// Whether there is nothing to do with the upper, the lower horizon in the cell that is visited.
+    is_settled: [bool; 2],
+    /// Whether the far edges of the cell that is visited are known to be visible.
+    is_seen: bool,
     /// Cells visited since the horizons' steps were found.
     n_visited: usize,
     /// Edges wholly visible; each is written by the one strip that holds it.
@@ -38,8 +40,18 @@ impl<'a, S: Samples> Strip<'a, S> {
     ) -> Self {
         let upper = upper.then(|| Horizon::new(from, to, true));
         let lower = lower.then(|| Horizon::new(from, to, false));
-        let is_within = [false; 2];
-        Self { plane, from, to, upper, lower, is_within, n_visited: 0, status, found: Vec::new() }
+        Self {
+            plane,
+            from,
+            to,
+            upper,
+            lower,
+            is_settled: [false; 2],
+            is_seen: false,
+            n_visited: 0,
+            status,
+            found: Vec::new(),
+        }
     }
 
     pub(super) fn work(&self) -> Work {
@@ -108,40 +120,79 @@ impl<'a, S: Samples> Strip<'a, S> {
         Some(segment)
     }
 
-    /// Looks where a cell lies as a whole; says whether there is anything to do with its segments,
-    /// which are compared with those horizons only that it is not surely within. `range` is that of
-    /// its corners' u.
+    /// Looks where a triangle lies as a whole; says whether there is anything to do with its
+    /// segments, which are compared with those horizons only that it is not surely within. `range`
+    /// is that of its corners' u.
     #[inline]
-    pub(super) fn visit<const N: usize>(
-        &mut self,
-        corners: [Vertex; N],
-        range: (f64, f64),
-    ) -> bool {
+    pub(super) fn visit(&mut self, corners: [Vertex; 3], range: (f64, f64)) -> bool {
+        self.keep_steps();
+        for (horizon, is_settled) in
+            [&mut self.upper, &mut self.lower].into_iter().zip(&mut self.is_settled)
+        {
+            *is_settled = horizon
+                .as_mut()
+                .is_none_or(|horizon| horizon.encloses(&self.plane, corners, range));
+        }
+        self.is_settled != [true; 2]
+    }
+
+    /// The same for a cell, whose far edges have these numbers; none where one of them is radial.
+    /// A horizon that only moves from its near edges to its far ones does so at once.
+    #[inline]
+    pub(super) fn visit_cell(&mut self, cell: &Cell, far_edges: Option<[u32; 2]>) -> bool {
+        self.keep_steps();
+        let Cell { near, right, left, far, .. } = *cell;
+        let margin = 4.0 * self.plane.du;
+        let far_edges =
+            far_edges.filter(|_| left.u > self.from + margin && right.u < self.to - margin);
+        let horizons = [(&mut self.upper, UPPER), (&mut self.lower, LOWER)];
+        for ((horizon, seen), is_settled) in horizons.into_iter().zip(&mut self.is_settled) {
+            let Some(horizon) = horizon else {
+                *is_settled = true;
+                continue;
+            };
+            if let Some(edges) = far_edges
+                && horizon.advance(&self.plane, cell)
+            {
+                if !self.is_seen {
+                    for edge in edges {
+                        self.status[edge as usize].store(seen, Relaxed);
+                    }
+                }
+                (*is_settled, self.is_seen) = (true, true);
+            } else {
+                let corners = [near, right, left, far];
+                *is_settled = horizon.encloses(&self.plane, corners, (left.u, right.u));
+            }
+        }
+        self.is_settled != [true; 2]
+    }
+
+    /// Finds the horizons' steps again when that costs no more than was done since.
+    #[inline]
+    fn keep_steps(&mut self) {
         self.n_visited += 1;
         let horizons = [&self.upper, &self.lower].into_iter().flatten();
         if self.n_visited > horizons.map(Horizon::n_parts).sum() {
             self.n_visited = 0;
             [&mut self.upper, &mut self.lower].into_iter().flatten().for_each(Horizon::renew_steps);
         }
-        self.is_within = [&mut self.upper, &mut self.lower].map(|horizon| {
-            horizon.as_mut().is_none_or(|horizon| horizon.encloses(&self.plane, corners, range))
-        });
-        self.is_within != [true; 2]
     }
 
     /// After this, segments are compared with both horizons.
     #[inline]
     pub(super) fn leave(&mut self) {
-        self.is_within = [false; 2];
+        self.is_settled = [false; 2];
+        self.is_seen = false;
     }
 
     /// Lets a segment hide what comes later.
     #[inline]
     pub(super) fn hide(&mut self, segment: &Segment) {
-        for (horizon, is_within) in
-            [&mut self.upper, &mut self.lower].into_iter().zip(self.is_within)
+        for (horizon, is_settled) in
+            [&mut self.upper, &mut self.lower].into_iter().zip(self.is_settled)
         {
-            if let Some(horizon) = horizon.as_mut().filter(|_| !is_within) {
+            if let Some(horizon) = horizon.as_mut().filter(|_| !is_settled) {
                 horizon.add(&self.plane, segment, |_, _| {});
             }
         }
@@ -150,11 +201,11 @@ impl<'a, S: Samples> Strip<'a, S> {
     /// Records what is visible of a segment, which is an edge of the drawing, and lets it hide.
     #[inline]
     pub(super) fn draw(&mut self, segment: &Segment, edge: u32) {
-        let Self { plane, status, found, from, to, is_within, .. } = self;
-        let mut wholly = false;
+        let Self { plane, status, found, from, to, is_settled, .. } = self;
+        let mut wholly = self.is_seen;
         let horizons = [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)];
-        for ((horizon, side), &is_within) in horizons.into_iter().zip(&*is_within) {
-            let Some(horizon) = horizon.as_mut().filter(|_| !is_within) else { continue };
+        for ((horizon, side), &is_settled) in horizons.into_iter().zip(&*is_settled) {
+            let Some(horizon) = horizon.as_mut().filter(|_| !is_settled) else { continue };
             let seen_before = wholly;
             horizon.add(plane, segment, |begin, end| {
                 if seen_before {

@@ -35,6 +35,17 @@ impl Horizon {
         if self.up < 0.0 { order.reverse() } else { order }
     }
 
+    /// Whether a sample is beyond a line, as far as rounded numbers tell.
+    #[inline]
+    pub(super) fn side_of<S: Samples>(
+        &self,
+        plane: &Plane<S>,
+        p: Vertex,
+        line: &Line,
+    ) -> Option<Ordering> {
+        filtered((p.v - line.at(p.u)) * self.up, line.error + plane.v_error(p.v))
+    }
+
     /// Whether a sample is beyond a line: `Greater` is above for the upper horizon.
     pub(super) fn point_over<S: Samples>(
         &mut self,
@@ -45,8 +56,7 @@ impl Horizon {
         if p.id == line.a || p.id == line.b {
             return Ordering::Equal;
         }
-        let error = line.error + plane.v_error(p.v);
-        if let Some(order) = filtered((p.v - line.at(p.u)) * self.up, error) {
+        if let Some(order) = self.side_of(plane, p, line) {
             return order;
         }
         self.work.exact += 1;
