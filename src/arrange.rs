@@ -60,9 +60,9 @@ impl Arrangement {
             return Ok((models.pop().unwrap_or_default().0, Repairs::default()));
         }
         let mut soup = PolygonSoup::default();
-        for (mesh, pose) in &models {
+        for (number, (mesh, pose)) in (0..).zip(&models) {
             let first = soup.positions.len();
-            append(&mut soup, mesh)?;
+            append(&mut soup, mesh, number)?;
             let matrix = self.matrix(pose);
             if matrix != DMat3::IDENTITY || pose.move_by != DVec3::ZERO {
                 for position in &mut soup.positions[first..] {
@@ -97,8 +97,8 @@ impl Arrangement {
     }
 }
 
-/// Adds the faces and parts of `mesh` to `soup`.
-fn append(soup: &mut PolygonSoup, mesh: &Mesh) -> Result<(), MeshError> {
+/// Adds the faces and parts of `mesh`, which is the model with this number, to `soup`.
+fn append(soup: &mut PolygonSoup, mesh: &Mesh, model: u32) -> Result<(), MeshError> {
     let too_large = |_| MeshError::TooLarge;
     let first_vertex = u32::try_from(soup.positions.len()).map_err(too_large)?;
     let n_corners = soup.corners.len() + mesh.corners().len();
@@ -110,10 +110,10 @@ fn append(soup: &mut PolygonSoup, mesh: &Mesh) -> Result<(), MeshError> {
     soup.corners.extend(mesh.corners().iter().map(|corner| first_vertex + corner));
     soup.face_starts.extend(mesh.face_starts().iter().skip(1).map(|end| first_corner + end));
     if mesh.face_parts().is_empty() {
-        soup.parts.push(Part::default());
+        soup.parts.push(Part { model, ..Part::default() });
         soup.face_parts.extend(std::iter::repeat_n(first_part, mesh.n_faces()));
     } else {
-        soup.parts.extend_from_slice(mesh.parts());
+        soup.parts.extend(mesh.parts().iter().map(|part| Part { model, ..part.clone() }));
         soup.face_parts.extend(mesh.face_parts().iter().map(|part| first_part + part));
     }
     Ok(())

@@ -390,8 +390,9 @@ impl Borders {
             return Self { of_faces: Vec::new() };
         }
         let mut first = HashMap::new();
+        let names = mesh.parts().iter().map(|part| (&part.group, &part.material));
         let numbers: Vec<u32> =
-            (0..).zip(mesh.parts()).map(|(i, part)| *first.entry(part).or_insert(i)).collect();
+            (0..).zip(names).map(|(i, names)| *first.entry(names).or_insert(i)).collect();
         let of_faces = mesh.face_parts().iter().map(|&part| numbers[part as usize]).collect();
         Self { of_faces }
     }

@@ -18,6 +18,7 @@ use thiserror::Error;
 use crate::engines::face::region::Region;
 use crate::engines::face::{Engine, FaceError, Painting, Prepared, Settings, merge};
 use crate::light::{DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes};
+use crate::mesh::Part;
 use crate::plot::Fills;
 use crate::scene::Scene;
 use crate::strokes::{Drawing, StrokeKind};
@@ -72,8 +73,8 @@ pub struct FillOptions {
     pub depth_cue: f64,
     /// The color of faces that have none of their material; `None` for that of paper.
     pub paint: Option<[u8; 3]>,
-    /// Colors of materials by their name.
-    pub materials: BTreeMap<String, [u8; 3]>,
+    /// Colors of materials by their name, for each model of the scene.
+    pub materials: Vec<BTreeMap<String, [u8; 3]>>,
     /// The inks; `None` for any number of colors.
     pub palette: Option<Palette>,
 }
@@ -248,7 +249,10 @@ struct Shader<'a> {
 impl<'a> Shader<'a> {
     fn new(scene: &'a Scene, camera: &'a Camera, faces: &[u32], options: &FillOptions) -> Self {
         let paint = parts(options.paint.unwrap_or(DEFAULT_PAINT));
-        let of_material = |name: &String| options.materials.get(name).copied().map_or(paint, parts);
+        let of_part = |part: &Part| {
+            let colors = options.materials.get(part.model as usize);
+            colors.and_then(|colors| colors.get(&part.material)).copied().map_or(paint, parts)
+        };
         let mut shader = Self {
             scene,
             camera,
@@ -256,7 +260,7 @@ impl<'a> Shader<'a> {
             show: options.show,
             depth_cue: options.depth_cue.clamp(0.0, 1.0),
             paint,
-            part_paints: scene.mesh().parts().iter().map(|p| of_material(&p.material)).collect(),
+            part_paints: scene.mesh().parts().iter().map(of_part).collect(),
             distances: (0.0, 1.0),
         };
         let range = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));

@@ -35,6 +35,8 @@ pub struct Part {
     pub group: String,
     /// Name of the material; empty when the file gives none.
     pub material: String,
+    /// Which of the models that were put together it is a part of, counted from 0.
+    pub model: u32,
 }
 
 impl Default for PolygonSoup {

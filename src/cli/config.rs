@@ -23,7 +23,9 @@ const PROJECT_FILE: &str = "hiddenline.toml";
 /// Settings of the user, in the folder for configurations.
 const USER_FILE: &str = "hiddenline/config.toml";
 /// Commands that settings apply to.
-const COMMANDS: [&str; 3] = ["draw", "surface", "optimize"];
+const COMMANDS: [&str; 5] = ["draw", "surface", "fill", "preview", "optimize"];
+/// Settings for pens, which a picture of filled areas has no use for.
+const FOR_PENS: [&str; 3] = ["format", "machine", "gcode-profile"];
 
 /// The arguments with all settings, without the program's name.
 static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
@@ -154,7 +156,7 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
         return Ok(matches);
     };
     let Some(options) = command.find_subcommand(name) else { return Ok(matches) };
-    let preset = chosen.get_one::<String>("preset").cloned();
+    let preset = chosen.try_get_one::<String>("preset").ok().flatten().cloned();
     let is_typed = |id: &str| {
         chosen.try_contains_id(id).unwrap_or(false)
             && chosen.value_source(id) == Some(ValueSource::CommandLine)
@@ -171,6 +173,9 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
             if name == "lines"
                 && !options.get_arguments().any(|arg| arg.get_long() == Some("crease"))
             {
+                continue;
+            }
+            if options.get_name() == "fill" && FOR_PENS.contains(&name.as_str()) {
                 continue;
             }
             let Some(arg) = options.get_arguments().find(by_name) else { continue };

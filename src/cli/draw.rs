@@ -16,7 +16,7 @@ use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions};
 use super::page::PageArgs;
-use super::paper::{Run, check_terminal};
+use super::paper::Run;
 use super::scene::{Subject, count};
 use super::{Refused, config, source};
 
@@ -87,7 +87,6 @@ impl DrawArgs {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    check_terminal(&job.output)?;
     let mut run = Run::start(&job.output)?;
     let read = || job.files.read();
     let lines = Some(job.draw.lines);

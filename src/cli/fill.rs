@@ -12,6 +12,7 @@ use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::face::Prepared;
 use hiddenline::engines::image::raster::Corners;
 use hiddenline::fill::{FillOptions, Filled, fill_prepared};
+use hiddenline::framing::sin_cos_deg;
 use hiddenline::optimize::Options;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::read::material_colors;
@@ -26,7 +27,7 @@ use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions};
 use super::page::PageArgs;
-use super::paper::{Run, check_terminal};
+use super::paper::Run;
 use super::progress::Progress;
 use super::scene::{Subject, count};
 use super::{Refused, config, source, values};
@@ -135,7 +136,6 @@ impl FillArgs {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    check_terminal(&job.output)?;
     let mut run = Run::start(&job.output)?;
     let read = || job.files.read();
     let lines = job.edges.map(|edges| edges.lines);
@@ -145,7 +145,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut fill = job.fill.clone();
     for path in &job.files.models {
         let found = material_colors(path);
-        fill.materials.extend(found.colors);
+        fill.materials.push(found.colors);
         run.notes.warnings.extend(found.warnings);
     }
     let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))?;
@@ -157,7 +157,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     };
     let Run { output, start, progress, stats, mut notes } = run;
     drop(progress);
-    let cameras = (0..n).map(|number| turned(&camera, f64::from(number) / f64::from(n)));
+    let cameras = (0..n).map(|k| turned(&camera, 360.0 * f64::from(k) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
     let frame = frame(&scene, &cameras);
     let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: Some(frame) };
@@ -250,9 +250,10 @@ fn frame_into(frame: &mut Drawing, scene: &Scene, cameras: &[Camera]) {
     }
 }
 
-/// The camera after a part of a turn around the vertical through its target.
-fn turned(camera: &Camera, part: f64) -> Result<Camera, Box<dyn Error>> {
-    let turn = DMat3::from_rotation_z(part * std::f64::consts::TAU);
+/// The camera turned around the vertical through its target; exact for quarter turns.
+fn turned(camera: &Camera, angle_deg: f64) -> Result<Camera, Box<dyn Error>> {
+    let (sin, cos) = sin_cos_deg(angle_deg);
+    let turn = DMat3::from_cols_array(&[cos, sin, 0.0, -sin, cos, 0.0, 0.0, 0.0, 1.0]);
     let eye = camera.target() + turn * (camera.eye() - camera.target());
     Ok(Camera::new(eye, camera.target(), turn * camera.up(), camera.projection())?)
 }

@@ -12,7 +12,7 @@ use hiddenline::stats::timed;
 use hiddenline::writers::Format;
 
 use super::output::{OutputArgs, OutputOptions};
-use super::paper::{Notes, Run, check_terminal};
+use super::paper::{Notes, Run};
 use super::paths::{is_dash, title};
 use super::{Refused, config, source, values};
 
@@ -78,11 +78,10 @@ impl OptimizeArgs {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    check_terminal(&job.output)?;
+    let mut run = Run::start(&job.output)?;
     if is_dash(&job.file) && io::stdin().is_terminal() {
         return Err("standard input is the terminal; give a file, or send an SVG to it".into());
     }
-    let mut run = Run::start(&job.output)?;
     run.progress.stage("reading");
     let name = title(&job.file);
     let read = timed(&mut run.stats.seconds.read, || -> Result<_, Box<dyn Error>> {

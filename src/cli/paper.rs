@@ -37,7 +37,7 @@ pub(super) struct Run<'a> {
 }
 
 /// Refuses to send a picture to a terminal.
-pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
+fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
     if output.path.is_none() && output.format.is_binary() && io::stdout().is_terminal() {
         return Err("this format is not for the terminal; give -o FILE".into());
     }
@@ -55,6 +55,7 @@ pub(super) fn start_threads(threads: Option<usize>) -> Result<Stats, Box<dyn Err
 impl<'a> Run<'a> {
     /// A run with nothing done yet.
     pub(super) fn start(output: &'a OutputOptions) -> Result<Self, Box<dyn Error>> {
+        check_terminal(output)?;
         let start = Instant::now();
         let stats = start_threads(output.threads)?;
         let progress = Progress::new(output.quiet);

@@ -7,6 +7,7 @@ mod smoothness;
 use std::error::Error;
 use std::path::Path;
 
+use glam::DVec2;
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
 use hiddenline::dressing::{Titles, dress};
 use hiddenline::engines::edge::Engine;
@@ -30,6 +31,15 @@ use super::camera::ViewSource;
 use super::output::OutputOptions;
 use super::paper::Run;
 use super::{config, source};
+
+/// Most triangles that a mesh engine is given: about 3 GB of memory.
+const MOST_TRIANGLES: u64 = 8_000_000;
+
+/// More of the paper covered with lines than this looks like a sheet of ink.
+const CROWDED: f64 = 0.5;
+
+/// How much of the paper lines cover that are easily told apart.
+const WELL_COVERED: f64 = 0.25;
 
 /// Drawings with at most so many points are joined again in a moment.
 const FEW_POINTS: usize = 12_000;
@@ -62,8 +72,14 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     let stats = &mut run.stats;
     run.progress.stage("sampling");
-    let Sampled { surface, factor, camera, refined } =
+    let Sampled { surface, factor, camera, refined, deviation_mm } =
         timed(&mut stats.seconds.read, || smoothness::sample(job))?;
+    if deviation_mm > job.smoothness_mm {
+        run.notes.warnings.push(format!(
+            "lines are up to {deviation_mm:.1} mm off the function, at kinks, jumps or where it \
+             is steep; more --samples draw it more closely"
+        ));
+    }
     let bounds = surface.bounds();
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     run.progress.stage("drawing");
@@ -72,6 +88,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         Some(grid) => draw_by_grid(job, grid, &lines, &camera, stats)?,
         None => draw_by_mesh(job, &surface, factor, &lines, &camera, stats)?,
     };
+    run.notes.warnings.extend(crowding(job, &drawing, &camera));
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
     }
@@ -80,6 +97,27 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     stats.points = drawing.n_points();
     run.notes.summary = format!("{}: {}", title(job), surface.described());
     run.draw(&drawing, &camera, &job.page, plot_options(job), &usual)
+}
+
+/// A warning when lines are so close that they flow into each other.
+fn crowding(job: &Job, drawing: &Drawing, camera: &Camera) -> Option<String> {
+    let has_families = job.lines.along_x || job.lines.along_y;
+    if job.lines.separate || !has_families || job.output.format == Format::Json {
+        return None;
+    }
+    let page = Page::new(drawing, camera, &job.page).ok()?;
+    let (low, high) = drawing.bounds()?;
+    let size_mm = (high - low) * page.mm_per_image_unit();
+    let pairs = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+    let length: f64 = drawing.iter().map(|stroke| pairs(stroke.points)).sum();
+    let ink = length * page.mm_per_image_unit() * job.pen_width_mm;
+    let covered = ink / (size_mm.x * size_mm.y);
+    // A flat surface seen edge-on is a line; there is nothing to tell apart.
+    let is_area = size_mm.min_element() > job.pen_width_mm;
+    (is_area && covered > CROWDED).then(|| {
+        let every = (job.lines.every as f64 * covered / WELL_COVERED).ceil();
+        format!("lines flow into each other; --every {every} draws fewer")
+    })
 }
 
 /// What to do with the strokes. Those of a grid run along its lines already, in a short way from
@@ -109,7 +147,7 @@ fn draw_by_grid(
                 let family = if job.lines.along_x { Family::AlongX } else { Family::AlongY };
                 ("floating-horizon", floating_horizon::solve(grid, camera, family)?)
             }
-            _ => ("max-min", max_min::solve(grid, camera, Order::Rows)?),
+            _ => (max_min::NAME, max_min::solve(grid, camera, Order::Rows)?),
         })
     })?;
     stats.engine = engine;
@@ -142,6 +180,19 @@ fn draw_by_mesh(
         every: lines.every,
         triangles: job.all_edges,
     };
+    let too_many = |n: u64| {
+        (n > MOST_TRIANGLES).then(|| {
+            format!(
+                "the surface has {n} triangles, and its lines need an engine for meshes, which \
+                 takes {MOST_TRIANGLES}; give fewer --samples or --levels"
+            )
+        })
+    };
+    let cells = |(n_columns, n, _): &sheets::Lattice| {
+        (n_columns - 1) as u64 * (n / n_columns).saturating_sub(1) as u64
+    };
+    let n_triangles = 2 * surface.lattices().iter().map(cells).sum::<u64>();
+    too_many(n_triangles).map_or(Ok(()), Err)?;
     let scene = timed(&mut seconds.topology, || -> Result<_, Box<dyn Error>> {
         let mut mesh = LinedMesh::default();
         match surface {
@@ -162,12 +213,14 @@ fn draw_by_mesh(
         if let Some(levels) = &job.levels {
             let (low, high) = surface.bounds();
             let n = |count: u16| f64::from(count) + 1.0;
-            mesh.add_levels(&match levels {
+            let heights: Vec<f64> = match levels {
                 Levels::Count(count) => (1..=*count)
                     .map(|k| low.z + (high.z - low.z) * f64::from(k) / n(*count))
                     .collect(),
-                Levels::At(heights) => heights.iter().map(|z| z * factor).collect::<Vec<_>>(),
-            });
+                Levels::At(heights) => heights.iter().map(|z| z * factor).collect(),
+            };
+            too_many(mesh.n_pieces_with_levels(&heights)).map_or(Ok(()), Err)?;
+            mesh.add_levels(&heights);
         }
         Ok(mesh.into_scene()?)
     })?;
@@ -176,7 +229,7 @@ fn draw_by_mesh(
         engine: match job.engine {
             EngineName::Roberts => Engine::Roberts,
             EngineName::Appel => Engine::Appel,
-            _ => Engine::Auto,
+            EngineName::Auto | EngineName::MaxMin | EngineName::FloatingHorizon => Engine::Auto,
         },
         folds: job.folds,
         border: job.border,
@@ -188,7 +241,13 @@ fn draw_by_mesh(
     let mm_per_unit = |drawing: &Drawing| {
         Page::new(drawing, camera, &job.page).map_or(1.0, |page| page.mm_per_image_unit())
     };
-    Ok(meshed::draw(&scene, camera, &options, mm_per_unit, stats))
+    let drawing = meshed::draw(&scene, camera, &options, mm_per_unit, stats);
+    if job.engine == EngineName::MaxMin && stats.engine != max_min::NAME {
+        return Err("max-min draws one surface z = f(x, y) without holes, over a convex part of \
+                    the plane, none of it cut by the near plane: give --engine auto"
+            .into());
+    }
+    Ok(drawing)
 }
 
 fn count(stats: &mut Stats, grid: &Grid, pieces: &GridPieces) {

@@ -5,6 +5,7 @@
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::{Options, Show};
 use crate::engines::image::{NOTHING, PixelMap, Raster};
@@ -158,8 +159,12 @@ fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
+/// At vertices with more triangles than this the mean is that of all: the tip of a fan so fine is no
+/// corner of anything, and comparing each with each would take too long.
+const MOST_COMPARED: usize = 256;
+
 /// For each corner of each triangle the mean normal, by area, of the triangles at that vertex that
-/// meet it at `angle_deg` or less. O(triangles × triangles at a vertex), in parallel.
+/// meet it at `angle_deg` or less; see [`MOST_COMPARED`]. O(triangles), in parallel.
 fn smooth_normals(scene: &Scene, angle_deg: f64) -> Vec<[DVec3; 3]> {
     let triangles = scene.triangles();
     let cosine = libm::cos(angle_deg.clamp(0.0, 180.0).to_radians());
@@ -182,8 +187,20 @@ fn smooth_normals(scene: &Scene, angle_deg: f64) -> Vec<[DVec3; 3]> {
             next[vertex as usize] += 1;
         }
     }
+    let range = |vertex: u32| starts[vertex as usize]..starts[vertex as usize + 1];
+    let of_all = |vertex: u32| -> DVec3 {
+        around[range(vertex)].iter().map(|&triangle| flat[triangle as usize]).sum()
+    };
+    let is_crowded = |vertex: &u32| range(*vertex).len() > MOST_COMPARED;
+    let crowded: FxHashMap<u32, DVec3> = (0..scene.mesh().positions().len() as u32)
+        .filter(is_crowded)
+        .map(|vertex| (vertex, of_all(vertex).normalize_or_zero()))
+        .collect();
     let mean = |own: DVec3, vertex: u32| {
-        let range = starts[vertex as usize]..starts[vertex as usize + 1];
+        if let Some(&mean) = crowded.get(&vertex) {
+            return mean;
+        }
+        let range = range(vertex);
         let near = around[range].iter().map(|&other| flat[other as usize]);
         let near = near.filter(|other| own.dot(*other) >= cosine * own.length() * other.length());
         near.sum::<DVec3>().normalize_or_zero()

@@ -119,7 +119,7 @@ fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
         let group = name(words.rest_of_line());
         read_solid(&mut words, &mut draft)?;
         draft.soup.face_parts.resize(draft.soup.n_faces(), solids.len() as u32);
-        solids.push(Part { group, material: String::new() });
+        solids.push(Part { group, ..Part::default() });
     }
     if solids.len() == 1 && solids.iter().all(|solid| solid.group.is_empty()) {
         draft.soup.face_parts.clear();

@@ -19,13 +19,24 @@ use super::lined_mesh::{LinedMesh, SurfaceLine};
 use crate::strokes::StrokeKind;
 
 impl LinedMesh {
+    /// How many pieces [`add_levels`](Self::add_levels) cuts the triangles into, at most.
+    /// O(triangles log levels).
+    pub fn n_pieces_with_levels(&self, levels: &[f64]) -> u64 {
+        let levels = sorted(levels);
+        let n_between = |corners: &[u32; 3]| {
+            let heights = corners.map(|k| self.positions[k as usize].z);
+            let low = heights.into_iter().fold(f64::INFINITY, f64::min);
+            let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            between(&levels, low, high).len() as u64
+        };
+        // A level cuts off a triangle or a quadrilateral from what is left.
+        self.triangles.iter().map(|corners| 1 + 2 * n_between(corners)).sum()
+    }
+
     /// Cuts all triangles at the given heights and draws lines of kind level there. An edge that
     /// lies at a level is one, unless the faces beside it do, too. O(triangles + pieces).
     pub fn add_levels(&mut self, levels: &[f64]) {
-        let mut levels: Vec<f64> =
-            levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
-        levels.sort_by(f64::total_cmp);
-        levels.dedup();
+        let levels = sorted(levels);
         let mut cutter = Cutter {
             levels: &levels,
             n_original: self.positions.len() as u32,
@@ -47,6 +58,20 @@ impl LinedMesh {
     }
 }
 
+/// Heights that are numbers, each once, the lowest first.
+fn sorted(levels: &[f64]) -> Vec<f64> {
+    let mut levels: Vec<f64> = levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    levels
+}
+
+/// The numbers of the levels strictly between two heights.
+fn between(levels: &[f64], low: f64, high: f64) -> std::ops::Range<usize> {
+    let first = levels.partition_point(|z| *z <= low);
+    first..levels.partition_point(|z| *z < high).max(first)
+}
+
 struct Cutter<'a> {
     levels: &'a [f64],
     n_original: u32,
@@ -60,12 +85,6 @@ struct Cutter<'a> {
 impl Cutter<'_> {
     fn z(&self, vertex: u32) -> f64 {
         self.positions[vertex as usize].z
-    }
-
-    /// The numbers of the levels strictly between two heights.
-    fn between(&self, low: f64, high: f64) -> std::ops::Range<usize> {
-        let first = self.levels.partition_point(|z| *z <= low);
-        first..self.levels.partition_point(|z| *z < high).max(first)
     }
 
     /// The vertex at a level on the edge, or the part of one, between two vertices on either side.
@@ -107,7 +126,7 @@ impl Cutter<'_> {
             }
         }
         let mut above = corners.to_vec();
-        for level in self.between(low, high) {
+        for level in between(self.levels, low, high) {
             let z = self.levels[level];
             let (mut lower, mut upper) = (Vec::new(), Vec::new());
             let mut ends = Vec::with_capacity(2);
@@ -144,7 +163,7 @@ impl Cutter<'_> {
         let [a, b] = line.ends;
         let (low, high) = if self.z(a) < self.z(b) { (a, b) } else { (b, a) };
         let mut last = low;
-        for level in self.between(self.z(low), self.z(high)) {
+        for level in between(self.levels, self.z(low), self.z(high)) {
             if let Some(&vertex) = self.cuts.get(&([low, high], level as u32)) {
                 out.push(SurfaceLine { ends: [last, vertex], ..line });
                 last = vertex;

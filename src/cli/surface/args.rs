@@ -91,7 +91,8 @@ struct InputArgs {
     v: Option<(f64, f64)>,
     /// Where the surface is, as a formula of x and y that is true there, such as x^2+y^2<=9
     ///
-    /// The surface is cut along the border of this domain, which is drawn.
+    /// The surface is cut along the border of this domain. The border is drawn with grid lines, and
+    /// by --lines border.
     #[arg(long = "where", value_name = "EXPR", requires = "expression")]
     domain: Option<String>,
     /// Range of x [default: -5:5, for a file 0 to columns - 1]
@@ -138,7 +139,7 @@ struct LineArgs {
     /// How far lines may be from the curves they stand for, on paper; 0 draws them as sampled
     ///
     /// Formulas are sampled up to eight times as finely as --samples says, and only the lines of
-    /// --samples are drawn.
+    /// --samples are drawn. Neither the floating horizon nor --lines mesh does so.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0.1")]
     smoothness: f64,
     /// Give lines on the underside of the surface a pen and a layer of their own, `underside`
@@ -146,9 +147,9 @@ struct LineArgs {
     underside: bool,
     /// How hidden lines are found
     ///
-    /// auto: max-min where it can, otherwise roberts or appel; max-min: grid lines by a surface
-    /// without holes; roberts, appel: any lines by any surface; floating-horizon: one family by its
-    /// own nearer lines.
+    /// auto: max-min where it can, otherwise roberts or appel; max-min: any lines by one surface
+    /// z = f(x, y) without holes; roberts, appel: any lines by any surface; floating-horizon: one
+    /// family by its own nearer lines.
     #[arg(long, value_enum, default_value = "auto")]
     engine: EngineName,
     /// Draw what is exactly visible, one stroke for each visible piece of each grid edge, with heights
@@ -304,9 +305,14 @@ impl SurfaceArgs {
             return Err("--levels is for level curves: give --lines levels, too".into());
         }
         let one_sheet = match &input {
-            Input::Formulas { formulas, domain, .. } => formulas.len() == 1 && domain.is_none(),
+            Input::Formulas { formulas, .. } => formulas.len() == 1,
+            Input::File(_) | Input::Points(_) => true,
+            Input::Parametric { .. } => false,
+        };
+        let is_grid = match &input {
+            Input::Formulas { domain, .. } => one_sheet && domain.is_none(),
             Input::File(_) => true,
-            _ => false,
+            Input::Points(_) | Input::Parametric { .. } => false,
         };
         match lines.engine {
             EngineName::FloatingHorizon if along.along_x == along.along_y || !only_grid_lines => {
@@ -314,10 +320,17 @@ impl SurfaceArgs {
                     "the floating horizon draws one family: give --lines x or --lines y".into()
                 );
             }
-            EngineName::FloatingHorizon | EngineName::MaxMin if !one_sheet || !only_grid_lines => {
-                return Err("this engine draws only grid lines of one surface z = f(x, y): give \
-                            --engine roberts or auto"
-                    .into());
+            EngineName::FloatingHorizon if !is_grid => {
+                return Err(
+                    "the floating horizon draws one surface z = f(x, y) over a rectangle: \
+                            give --engine roberts or auto"
+                        .into(),
+                );
+            }
+            EngineName::MaxMin if !one_sheet => {
+                return Err(
+                    "max-min draws one surface z = f(x, y): give --engine roberts or auto".into()
+                );
             }
             _ => {}
         }

@@ -116,14 +116,16 @@ impl Surface {
     }
 
     fn candidate(&self, job: &Job) -> Option<&Grid> {
-        let needs_mesh = job.levels.is_some() || job.folds || job.border || job.all_edges;
+        let has_grid_lines = job.lines.along_x || job.lines.along_y;
+        let needs_mesh =
+            job.levels.is_some() || job.folds || job.border || job.all_edges || !has_grid_lines;
         match (self, job.engine) {
             (_, EngineName::Roberts | EngineName::Appel) => None,
-            (Self::Grids(grids), EngineName::Auto) => {
+            (Self::Grids(grids), EngineName::Auto | EngineName::MaxMin) => {
                 let grid = grids.first().filter(|_| grids.len() == 1 && !needs_mesh)?;
                 (grid.holes() == Holes::None).then_some(grid)
             }
-            (Self::Grids(grids), _) => grids.first(),
+            (Self::Grids(grids), EngineName::FloatingHorizon) => grids.first(),
             _ => None,
         }
     }
@@ -239,9 +241,19 @@ pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn 
         return Err("no sample has a height: nothing to draw".into());
     }
     let size = high - low;
+    if !size.is_finite() {
+        return Err(format!(
+            "heights from {:e} to {:e} are too far apart to draw; divide the formula or file",
+            low.z, high.z
+        )
+        .into());
+    }
     let fitted = BOX_HEIGHT * size.x.max(size.y) / size.z;
     let fits = job.aspect == Aspect::Box && fitted.is_finite() && fitted > 0.0;
     let factor = if fits { fitted } else { 1.0 } * job.z_scale;
+    if !(low.z * factor).is_finite() || !(high.z * factor).is_finite() {
+        return Err(format!("heights times {factor:e} are too large to draw").into());
+    }
     surface.scale_heights(factor);
     Ok((surface, factor))
 }

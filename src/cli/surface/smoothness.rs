@@ -38,6 +38,9 @@ pub(super) struct Sampled {
     pub(super) camera: Camera,
     /// How many cells along each axis stand for one of the samples asked for.
     pub(super) refined: usize,
+    /// How far lines are from the function at most, in millimetres on paper; 0 when they may be as
+    /// far as they are.
+    pub(super) deviation_mm: f64,
 }
 
 /// Samples the surface, more finely where its lines would deviate from the function by more than
@@ -47,33 +50,44 @@ pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
     loop {
         let (surface, factor) = read(job, refined)?;
         let camera = job.view.camera(surface.bounds())?;
-        let finer = finer(job, &surface, &camera, refined);
+        let deviation_mm =
+            if is_refinable(job) { deviation_mm(job, &surface, &camera) } else { 0.0 };
+        let finer = finer(job, &surface, &camera, refined, deviation_mm);
         if finer <= refined {
-            return Ok(Sampled { surface, factor, camera, refined });
+            return Ok(Sampled { surface, factor, camera, refined, deviation_mm });
         }
         refined = finer;
     }
 }
 
+/// Whether the job's surface can be sampled more finely to make its lines smooth.
+fn is_refinable(job: &Job) -> bool {
+    let is_formula = matches!(job.input, Input::Formulas { .. } | Input::Parametric { .. });
+    let is_floating = job.engine == EngineName::FloatingHorizon;
+    let has_curves = job.lines.along_x || job.lines.along_y;
+    is_formula && job.smoothness_mm > 0.0 && !job.all_edges && !is_floating && has_curves
+}
+
 /// How fine the samples have to be, at most; `refined` if they are fine enough.
-fn finer(job: &Job, surface: &Surface, camera: &Camera, refined: usize) -> usize {
+fn finer(
+    job: &Job,
+    surface: &Surface,
+    camera: &Camera,
+    refined: usize,
+    deviation_mm: f64,
+) -> usize {
     let samples = match &job.input {
         Input::Formulas { samples, .. } | Input::Parametric { samples, .. } => *samples,
         _ => return refined,
     };
-    let is_floating = job.engine == EngineName::FloatingHorizon;
-    if job.smoothness_mm <= 0.0 || job.all_edges || is_floating || refined >= MOST_REFINED {
+    if deviation_mm <= job.smoothness_mm || refined >= MOST_REFINED {
         return refined;
     }
     let by_grid = matches!(surface.only_grid(job, camera), Ok(Some(_)));
     let most = if by_grid { MOST_SAMPLES } else { MOST_MESH_SAMPLES };
     let cells = (samples.0 - 1).saturating_mul(samples.1 - 1).max(1);
     let affordable = (most as f64 / cells as f64).sqrt() as usize;
-    let deviation = deviation_mm(job, surface, camera);
-    let needed = refined as f64 * (deviation / job.smoothness_mm).sqrt();
-    if needed <= refined as f64 {
-        return refined;
-    }
+    let needed = refined as f64 * (deviation_mm / job.smoothness_mm).sqrt();
     (needed.ceil() as usize).min(MOST_REFINED).min(affordable).max(refined)
 }
 

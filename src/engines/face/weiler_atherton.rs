@@ -134,7 +134,6 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
                 left[other as usize].leave_out(&region);
             }
             work.draw(first, region, inside);
-            work.clipping[first as usize] = false;
             is_done[first as usize] = true;
         }
     }
@@ -177,21 +176,27 @@ impl Work<'_> {
         }
     }
 
-    /// Draws `region` of polygon `first`, which is in S, after what is in front of it.
+    /// Draws `region` of polygon `first`, which is in S, after what is in front of it: the algorithm
+    /// on a list L, sorted from near to far, that ends with `first` itself. A list that waits for
+    /// another is kept with the polygon that is in S for as long.
     fn draw(&mut self, first: u32, region: Arc<Region>, in_front: Vec<(u32, Region)>) {
+        let list_of = |first, region, in_front: Vec<(u32, Region)>| -> VecDeque<(u32, Rest)> {
+            let before = in_front.into_iter().map(|(other, front)| (other, Rest::new(front)));
+            let last = (first, Rest::new(Arc::unwrap_or_clone(region)));
+            before.chain([last]).collect()
+        };
         if in_front.is_empty() {
             self.drawn[first as usize].push(Arc::unwrap_or_clone(region));
+            self.clipping[first as usize] = false;
             return;
         }
-        let mut list: VecDeque<(u32, Rest)> =
-            in_front.into_iter().map(|(other, front)| (other, Rest::new(front))).collect();
-        list.push_back((first, Rest::new(Arc::unwrap_or_clone(region))));
-        self.solve(list);
-    }
-
-    /// The algorithm on a list L, sorted from near to far.
-    fn solve(&mut self, mut list: VecDeque<(u32, Rest)>) {
-        while let Some((first, rest)) = list.pop_front() {
+        let mut waiting = vec![(first, list_of(first, region, in_front))];
+        while let Some((clipper, list)) = waiting.last_mut() {
+            let Some((first, rest)) = list.pop_front() else {
+                self.clipping[*clipper as usize] = false;
+                waiting.pop();
+                continue;
+            };
             let region = rest.region();
             if region.is_empty() {
                 continue;
@@ -200,10 +205,9 @@ impl Work<'_> {
                 self.drawn[first as usize].push(region);
                 continue;
             }
-            self.clipping[first as usize] = true;
             let mut inside = Vec::new();
             let region = Arc::new(region);
-            for (other, left) in &mut list {
+            for (other, left) in list {
                 // What clips at the moment comes last: all before it is in front of it.
                 if !self.clipping[*other as usize] {
                     let front = self.in_front(first, &region, *other, left);
@@ -213,8 +217,12 @@ impl Work<'_> {
                 }
                 left.leave_out(&region);
             }
-            self.draw(first, region, inside);
-            self.clipping[first as usize] = false;
+            if inside.is_empty() {
+                self.drawn[first as usize].push(Arc::unwrap_or_clone(region));
+                continue;
+            }
+            self.clipping[first as usize] = true;
+            waiting.push((first, list_of(first, region, inside)));
         }
     }
 }

@@ -84,14 +84,39 @@ impl PixelEdge {
     /// depend on it.
     #[inline]
     pub fn column_near(&self, row: u32, estimate: f64, width: u32) -> u32 {
-        let mut column = first_center(estimate, width);
-        while column > 0 && self.has_on_right(column - 1, row) {
-            column -= 1;
+        let has_on_right = |column| self.has_on_right(column, row);
+        let start = first_center(estimate, width);
+        // The answer is one of low..=high; steps away from the estimate double.
+        let (mut low, mut high) = (start, start);
+        let mut step = 1;
+        if start > 0 && has_on_right(start - 1) {
+            high = start - 1;
+            low = 0;
+            while high > 0 {
+                let probe = high.saturating_sub(step);
+                if !has_on_right(probe) {
+                    low = probe + 1;
+                    break;
+                }
+                high = probe;
+                step = step.saturating_mul(2);
+            }
+        } else {
+            while low < width && !has_on_right(high.min(width - 1)) {
+                low = high.min(width - 1) + 1;
+                high = low.saturating_add(step).min(width);
+                step = step.saturating_mul(2);
+            }
         }
-        while column < width && !self.has_on_right(column, row) {
-            column += 1;
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if has_on_right(middle) {
+                high = middle;
+            } else {
+                low = middle + 1;
+            }
         }
-        column
+        low
     }
 
     /// Whether a pixel's center is on the edge's line or right of it. Exact.
@@ -115,4 +140,30 @@ pub fn first_center(x: f64, end: u32) -> u32 {
     // The cast rounds towards 0 and turns what is negative or not a number into 0.
     let below = (x - 0.5) as u32;
     below.saturating_add(u32::from(x - 0.5 > f64::from(below))).min(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_column_does_not_depend_on_the_estimate() {
+        let width = 37;
+        for (a, b) in [
+            (DVec2::new(3.5, 0.0), DVec2::new(3.5, 9.0)),
+            (DVec2::new(-40.0, -3.0), DVec2::new(80.0, 12.0)),
+            (DVec2::new(90.0, -2.0), DVec2::new(-7.25, 11.0)),
+            (DVec2::new(500.0, 0.0), DVec2::new(400.0, 9.0)),
+            (DVec2::new(-5.0, 0.0), DVec2::new(-1.0, 9.0)),
+        ] {
+            let edge = PixelEdge::new(a, b).unwrap();
+            for row in 0..9 {
+                let column = (0..width).find(|&column| edge.has_on_right(column, row));
+                let column = column.unwrap_or(width);
+                for estimate in [f64::NAN, -1e300, -0.5, 0.0, 1.5, 17.0, 36.0, 37.5, 40.0, 1e300] {
+                    assert_eq!(edge.column_near(row, estimate, width), column, "{row} {estimate}");
+                }
+            }
+        }
+    }
 }

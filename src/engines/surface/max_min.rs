@@ -56,6 +56,9 @@ use super::{Order, SurfaceError};
 use crate::surface::{Grid, Holes};
 use crate::view::{Camera, Projection};
 
+/// What this engine is called.
+pub const NAME: &str = "max-min";
+
 /// A part is split into strips of about this many cells, so that several threads share the work.
 /// The number depends on the surface only, so the drawing does not depend on the threads.
 const CELLS_PER_STRIP: usize = 10_000;

@@ -1,6 +1,7 @@
 //! Surfaces of triangles: by [`tin`] where that can, else by the mesh engines, which also draw what
 //! has holes, several sheets, or any shape in space.
 
+use super::max_min::NAME;
 use super::tin;
 use crate::chain::{ChainOptions, chain, shortest};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
@@ -70,7 +71,7 @@ pub fn draw(
             Some((visibility, work)) => {
                 n_exact = work.exact;
                 let candidate_pairs = work.comparisons;
-                (visibility, Counts { candidate_pairs, ..Counts::default() }, "max-min")
+                (visibility, Counts { candidate_pairs, ..Counts::default() }, NAME)
             }
             None => solve(&view, options.engine, &settings),
         }

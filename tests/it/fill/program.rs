@@ -132,6 +132,70 @@ fn materials_have_the_colors_of_their_file() {
 }
 
 #[test]
+fn materials_of_one_name_in_several_models_keep_their_colors() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    for (name, color, x) in [("a", "1 0 0", 0), ("b", "0 0 1", 2)] {
+        write(&format!("{name}.mtl"), &format!("newmtl Material\nKd {color}\n"));
+        let corners = format!("v {x} 0 0\nv {} 0 0\nv {x} 1 0\n", x + 1);
+        write(
+            &format!("{name}.obj"),
+            &format!("mtllib {name}.mtl\n{corners}usemtl Material\nf 1 2 3\n"),
+        );
+    }
+    let models = ["a.obj", "b.obj"].map(|name| folder.path().join(name));
+    let [a, b] = models.each_ref().map(|path| path.to_str().unwrap());
+    let svg = text(&fill(&[a, b, "--view", "top", "--light", "0,0,1", "--no-edges"]).stdout);
+    assert!(svg.contains("fill=\"#ff0000\"") && svg.contains("fill=\"#0000ff\""), "{svg}");
+}
+
+#[test]
+fn quarter_turns_of_a_turntable_are_exact() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("cube.off");
+    std::fs::write(
+        &model,
+        "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n\
+         4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n",
+    )
+    .unwrap();
+    let file = folder.path().join("turn.svg");
+    let (model, name) = (model.to_str().unwrap(), file.to_str().unwrap());
+    let output = fill(&[model, "--view", "front", "--turntable", "4", "-o", name]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    for k in 1..=4 {
+        let path = folder.path().join(format!("turn-00{k}.svg"));
+        let svg = std::fs::read_to_string(path).unwrap();
+        // A square, filled and with one line around it.
+        assert_eq!(svg.matches("<path").count(), 2, "{k}: {svg}");
+    }
+}
+
+#[test]
+fn settings_hold_for_fill_and_preview() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("hiddenline.toml"),
+        "[defaults]\npage = 'a6'\nview = 'top'\nformat = 'hpgl'\n",
+    )
+    .unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
+        command.args(arguments).current_dir(folder.path()).output().unwrap()
+    };
+    let filled = run(&["fill", SPOT, "--engine", "bsp"]);
+    assert!(filled.status.success(), "{}", text(&filled.stderr));
+    assert!(text(&filled.stdout).contains("width=\"105mm\""));
+    let typed = run(&["preview", SPOT, "--view", "top", "-o", "typed.png"]);
+    let set = run(&["preview", SPOT, "-o", "set.png"]);
+    assert!(typed.status.success() && set.status.success(), "{}", text(&set.stderr));
+    let picture = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(picture("typed.png") == picture("set.png"));
+    let unknown = run(&["fill", SPOT, "--preset", "nosuch"]);
+    assert_eq!(unknown.status.code(), Some(1));
+}
+
+#[test]
 fn the_order_of_painting_can_be_seen() {
     let output = fill(&[SPOT, "--engine", "bsp", "--debug", "order", "--no-edges"]);
     let svg = text(&output.stdout);

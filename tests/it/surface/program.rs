@@ -325,3 +325,44 @@ fn fails(folder: &TempDir, arguments: &[&str], code: i32, message: &str) {
     assert!(stderr.contains(message), "{arguments:?}: {stderr}");
     assert!(output.stdout.is_empty());
 }
+
+#[test]
+fn what_is_too_large_to_draw_is_told_before_work_begins() {
+    let folder = with_file("-1e308 1e308\n1e308 -1e308\n");
+    let run = |arguments: &[&str], message: &str| fails(&folder, arguments, 1, message);
+    run(&["x", "--samples", "10000", "--lines", "levels"], "has 199960002 triangles");
+    run(&["x", "--lines", "levels", "--levels", "65535"], "give fewer --samples or --levels");
+    run(&["x*1e308"], "too far apart to draw");
+    run(&["--grid", "heights"], "too far apart to draw");
+    run(&["x*1e300", "--aspect", "data", "--z-scale", "1e10"], "too large to draw");
+}
+
+#[test]
+fn lines_off_the_function_and_lines_that_flow_together_are_told() {
+    let folder = with_file("");
+    let warnings = |arguments: &[&str]| {
+        let output = run(&folder, &[arguments, &["-o", "out.svg"]].concat());
+        assert!(output.status.success());
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let off = warnings(&["sin(40*x)", "--aspect", "data", "--z-scale", "2", "--lines", "x"]);
+    assert!(off.contains("mm off the function"), "{off}");
+    let smooth = warnings(&["x*y"]);
+    assert!(!smooth.contains("off the function"), "{smooth}");
+    let crowded = warnings(&["x*y", "--samples", "600", "--smoothness", "0"]);
+    assert!(crowded.contains("lines flow into each other; --every "), "{crowded}");
+    let every = crowded.split("--every ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    let thinned = warnings(&["x*y", "--samples", "600", "--smoothness", "0", "--every", every]);
+    assert!(!thinned.contains("flow into each other"), "{thinned}");
+}
+
+#[test]
+fn max_min_by_choice_draws_more_than_grid_lines() {
+    let folder = with_file("nan 1 2\n3 4 5\n6 7 8\n");
+    let lines = ["sin(x)*cos(y)", "--lines", "both,levels,border,silhouette"];
+    let chosen = drawn(&folder, &[&lines[..], &["--engine", "max-min"]].concat());
+    assert_eq!(chosen, drawn(&folder, &lines));
+    assert_eq!(chosen.1, "max-min");
+    let message = "max-min draws one surface z = f(x, y) without holes";
+    fails(&folder, &["--grid", "heights", "--engine", "max-min"], 1, message);
+}

@@ -7,6 +7,7 @@
 //! ```
 
 use glam::DVec2;
+use rustc_hash::FxHashMap;
 
 use super::{SLIVER_STEPS, Side};
 use crate::engines::face::boxes::BoxIndex;
@@ -61,15 +62,51 @@ pub(super) fn welded(sides: Vec<Side>) -> Vec<Side> {
     result
 }
 
-/// For each corner, in order of x, the first one within a few steps of it that stays where it is.
+/// For each corner, in their order, the first one within a few steps of it that stays where it is;
+/// itself if there is none. Of those that stay only a few fit into a cell of that size. O(n).
 fn first_near(corners: &[DVec2]) -> Vec<u32> {
+    let cell = |at: DVec2| (at / SLIVER_STEPS).floor().to_array().map(|x| x as i64);
+    let mut staying: FxHashMap<[i64; 2], Vec<u32>> = FxHashMap::default();
     let mut kept: Vec<u32> = Vec::with_capacity(corners.len());
-    for (number, &corner) in corners.iter().enumerate() {
-        let before = (0..number).rev().take_while(|&k| corner.x - corners[k].x <= SLIVER_STEPS);
-        let near = before
-            .filter(|&k| kept[k] as usize == k && corner.distance(corners[k]) <= SLIVER_STEPS)
-            .last();
-        kept.push(near.unwrap_or(number) as u32);
+    for (number, &corner) in (0..).zip(corners) {
+        let own = cell(corner);
+        let around = (-1..=1).flat_map(|x| (-1..=1).map(move |y| [own[0] + x, own[1] + y]));
+        let near = around
+            .filter_map(|cell| staying.get(&cell))
+            .flatten()
+            .filter(|&&k| corner.distance(corners[k as usize]) <= SLIVER_STEPS)
+            .min();
+        let first = near.copied().unwrap_or(number);
+        if first == number {
+            staying.entry(own).or_default().push(number);
+        }
+        kept.push(first);
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Corners on a small lattice, many of them above each other.
+    #[test]
+    fn corners_become_the_first_one_near_them_that_stays() {
+        let step = SLIVER_STEPS / 3.0;
+        let mut corners: Vec<DVec2> = (0..400u32)
+            .map(|k| DVec2::new(f64::from(k * k % 7), f64::from(k * 31 % 173)) * step)
+            .collect();
+        corners.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        corners.dedup();
+        let mut expected: Vec<usize> = Vec::new();
+        for (number, corner) in corners.iter().enumerate() {
+            let is_near =
+                |&k: &usize| expected[k] == k && corner.distance(corners[k]) <= SLIVER_STEPS;
+            let first = (0..number).find(is_near).unwrap_or(number);
+            expected.push(first);
+        }
+        let found: Vec<usize> = first_near(&corners).into_iter().map(|k| k as usize).collect();
+        assert_eq!(found, expected);
+        assert!(expected.iter().zip(0..).any(|(&first, k)| first != k));
+    }
 }
