@@ -13,6 +13,9 @@
 //! | mesh | any | |
 //! | intersection | none | the line in which two faces cross |
 //!
+//! A bend of a face, where the scene knows of any (see [`crate::bends`]), is a silhouette where one
+//! of the triangles along it faces the eye and the other does not.
+//!
 //! Two uses that run the same way mean that the faces are wound against each other; the second
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
 
@@ -266,7 +269,7 @@ impl<'a> ViewedScene<'a> {
         facings[face as usize]
     }
 
-    /// The edges to draw, in the order of the topology, then the lines of intersection.
+    /// The edges to draw, in the order of the topology, then the lines of intersection, then bends.
     pub fn drawn(&self) -> &[DrawnEdge] {
         &self.drawn
     }
@@ -313,7 +316,41 @@ impl<'a> ViewedScene<'a> {
             let crossings = self.intersections(&drawn);
             drawn.extend(crossings.into_iter().map(|crossing| (crossing, true)));
         }
+        let is_whole = lines.contains(StrokeKind::Silhouette);
+        if is_whole || lines.has_outline() {
+            drawn.extend(self.bends().into_iter().map(|bend| (bend, is_whole)));
+        }
         drawn
+    }
+
+    /// The bends that are silhouettes.
+    fn bends(&self) -> Vec<DrawnEdge> {
+        let bends = self.scene.bends();
+        let first = (self.scene.n_lines() - bends.len()) as u32;
+        let is_front = |triangle: u32| self.triangle_turns[triangle as usize] == Sign::Positive;
+        let drawn = bends.par_iter().zip(first..first + bends.len() as u32);
+        drawn
+            .filter(|(bend, _)| is_front(bend.triangles[0]) != is_front(bend.triangles[1]))
+            .filter(|(bend, _)| !self.sight.same_image(bend.ends[0], bend.ends[1]))
+            .map(|(_, edge)| DrawnEdge { edge, kind: StrokeKind::Silhouette })
+            .collect()
+    }
+
+    /// Which way a face faces along one of its edges: as its triangle there, if the face is known to
+    /// be bent.
+    fn facing_along(&self, face: u32, edge: u32) -> Sign {
+        if !self.scene.is_bent(face) {
+            return self.facing(face);
+        }
+        let ends = self.scene.topology().edge(edge);
+        let faces = self.scene.triangle_faces();
+        let first = faces.partition_point(|&of| of < face);
+        let mut triangles = (first..faces.len()).take_while(|&triangle| faces[triangle] == face);
+        let along = triangles
+            .find(|&t| ends.iter().all(|end| self.scene.triangles()[t].contains(end)))
+            .map(|triangle| self.triangle_turns[triangle]);
+        // A triangle without area faces nowhere.
+        along.filter(|turn| *turn != Sign::Zero).unwrap_or_else(|| self.facing(face))
     }
 
     /// The lines of intersection to draw beside the edges that are `drawn`: those that are part of
@@ -323,7 +360,7 @@ impl<'a> ViewedScene<'a> {
             |edge: u32| drawn.binary_search_by_key(&edge, |(drawn, _)| drawn.edge).is_ok();
         let n_edges = self.scene.topology().edges().len() as u32;
         let lines = self.scene.intersections().lines();
-        let drawn = lines.par_iter().zip(n_edges..self.scene.n_lines() as u32);
+        let drawn = lines.par_iter().zip(n_edges..n_edges + lines.len() as u32);
         drawn
             .filter(|(line, _)| !line.edges().any(is_drawn))
             .filter(|(line, _)| !self.sight.same_image(line.ends[0], line.ends[1]))
@@ -351,8 +388,7 @@ impl<'a> ViewedScene<'a> {
         };
         let faces = [first, second].map(EdgeUse::face);
         let against = first.runs_upwards() == second.runs_upwards();
-        let facing = self.facing(faces[0]);
-        let other = self.facing(faces[1]);
+        let [facing, other] = faces.map(|face| self.facing_along(face, edge));
         let other = if against { other.flipped() } else { other };
         let is_crease = || creases.holds(faces.map(|face| self.normal(face)), against);
         if (facing == Sign::Positive) != (other == Sign::Positive) {

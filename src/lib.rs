@@ -8,7 +8,7 @@
 //!                  ▼               ▼                       ▼
 //!                scene ◄───────────┘                engines::surface
 //!       topology, triangulate,                      horizons over a grid
-//!           intersections                                  │
+//!           intersections, bends                           │
 //!                  │                                       │
 //!   view ──────► classify ─► engines::edge ─► visibility   │
 //!   framing    faces, edges  what is hidden   spans of qi  │
@@ -62,6 +62,8 @@ pub mod triangulate;
 pub mod predicates;
 
 pub mod intersections;
+
+pub mod bends;
 
 pub mod scene;
 

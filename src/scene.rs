@@ -3,10 +3,11 @@
 //! All that can be drawn is numbered in one row, and so are its ends:
 //!
 //! ```text
-//!   lines     edges of the mesh       | lines of intersection
+//!   lines     edges of the mesh       | lines of intersection               | bends
 //!   points    vertices of the mesh    | ends of those that are no vertices
 //! ```
 
+use crate::bends::{Bend, bends};
 use crate::intersections::{Intersection, Intersections};
 use crate::mesh::Mesh;
 use crate::predicates::PiercePoint;
@@ -22,6 +23,7 @@ pub struct Scene {
     triangles: Vec<[u32; 3]>,
     triangle_faces: Vec<u32>,
     intersections: Intersections,
+    bends: Vec<Bend>,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
     points: Vec<DVec3>,
 }
@@ -51,6 +53,16 @@ impl Scene {
         self
     }
 
+    /// Also finds where bent faces are folded, so that contours which run there can be drawn.
+    ///
+    /// Edges beside bent faces then are silhouettes by the triangles along them, not by the faces'
+    /// mean normals. O(corners), in parallel.
+    #[must_use]
+    pub fn with_bends(mut self) -> Self {
+        self.bends = bends(&self.mesh, &self.topology, &self.triangles, &self.triangle_faces);
+        self
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -76,27 +88,43 @@ impl Scene {
         &self.intersections
     }
 
+    /// Where bent faces are folded; nothing before [`with_bends`](Self::with_bends).
+    pub fn bends(&self) -> &[Bend] {
+        &self.bends
+    }
+
+    /// Whether a face is known to be bent. O(log bends).
+    pub fn is_bent(&self, face: u32) -> bool {
+        let of = |bend: &Bend| self.triangle_faces[bend.triangles[0] as usize];
+        self.bends.binary_search_by_key(&face, of).is_ok()
+    }
+
     /// The positions of all vertices, then those of constructed points, rounded.
     pub fn points(&self) -> &[DVec3] {
         if self.points.is_empty() { self.mesh.positions() } else { &self.points }
     }
 
-    /// Number of edges and lines of intersection.
+    /// Number of edges, lines of intersection and bends.
     pub fn n_lines(&self) -> usize {
-        self.topology.edges().len() + self.intersections.lines().len()
+        self.topology.edges().len() + self.intersections.lines().len() + self.bends.len()
     }
 
-    /// The ends of an edge or line of intersection, as numbers of points. Panics when there is no
+    /// The ends of an edge, line of intersection or bend, as numbers of points. Panics when there is no
     /// such line.
     #[inline]
     pub fn line(&self, line: u32) -> [u32; 2] {
-        match self.topology.edges().get(line as usize) {
-            Some(&ends) => ends,
-            None => self.intersections.lines()[line as usize - self.topology.edges().len()].ends,
+        let edges = self.topology.edges();
+        if let Some(&ends) = edges.get(line as usize) {
+            return ends;
+        }
+        let (number, crossings) = (line as usize - edges.len(), self.intersections.lines());
+        match crossings.get(number) {
+            Some(crossing) => crossing.ends,
+            None => self.bends[number - crossings.len()].ends,
         }
     }
 
-    /// The line of intersection with this number among all lines; `None` for an edge.
+    /// The line of intersection with this number among all lines; `None` for an edge or bend.
     #[inline]
     pub fn intersection(&self, line: u32) -> Option<&Intersection> {
         let number = (line as usize).checked_sub(self.topology.edges().len())?;
