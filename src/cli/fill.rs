@@ -197,6 +197,7 @@ impl Picture<'_> {
         let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
             fill_prepared(self.prepared, camera, &options)
         })?;
+        run.stats.counts.fill = filled.work;
         let page = match &self.frame {
             Some(_) => rough,
             None => {

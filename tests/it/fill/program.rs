@@ -5,12 +5,12 @@ use std::process::{Command, Output};
 
 const SPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");
 
-fn fill(arguments: &[&str]) -> Output {
+pub(super) fn fill(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
     command.arg("fill").args(arguments).output().unwrap()
 }
 
-fn text(bytes: &[u8]) -> String {
+pub(super) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 

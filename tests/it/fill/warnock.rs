@@ -37,7 +37,7 @@ fn the_example_is_16_by_16_pixels_of_which_24_show_a_and_34_show_b() {
         // Seen from below, the image is mirrored from left to right.
         let window = Some((dvec2(-25.5, 9.5), dvec2(-9.5, 25.5)));
         let options = Options { leaf: Some(1.0), window, subdivision };
-        let painting = solve(&scene, &camera, &options).unwrap();
+        let painting = solve(&scene, &camera, &options).unwrap().0;
         let mut counts = [0; 3];
         for y in 10..26 {
             for x in 10..26 {
@@ -59,7 +59,7 @@ fn the_example_is_the_picture_of_the_image_space_engines() {
     let (scene, camera) = built(&warnocks_pair());
     let window = Some((dvec2(-25.5, 9.5), dvec2(-9.5, 25.5)));
     let options = Options { leaf: Some(1.0), window, subdivision: Subdivision::Regular };
-    let painting = solve(&scene, &camera, &options).unwrap();
+    let painting = solve(&scene, &camera, &options).unwrap().0;
     let map = PixelMap { scale: 1.0, origin: dvec2(25.5, 25.5) };
     let raster = Raster::new(&scene, &camera, &map, (16, 16));
     for engine in image::Engine::ALL {
@@ -92,10 +92,10 @@ fn windows_show_what_rays_meet_except_near_borders() {
         }
         for subdivision in BOTH {
             let options = Options { leaf: Some(leaf), window: None, subdivision };
-            let painting = solve(&scene, &camera, &options).unwrap();
+            let painting = solve(&scene, &camera, &options).unwrap().0;
             let name = format!("seed {seed}, {subdivision:?}");
             // Where a face is thinner than a leaf there may be no border near.
-            let exact = weiler_atherton::solve(&scene, &camera).unwrap();
+            let exact = weiler_atherton::solve(&scene, &camera).unwrap().0;
             let near = |at: DVec2| painted(&exact, at).1 <= 1.5 * leaf;
             total += judged(&name, (&scene, &camera), &painting, 13, near);
         }
@@ -109,12 +109,12 @@ fn both_ways_of_dividing_give_one_picture() {
     let Some(mesh) = model("spot_control_quads.obj") else { return };
     let scene = Scene::new(mesh);
     let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
-    let exact = weiler_atherton::solve(&scene, &camera).unwrap();
+    let exact = weiler_atherton::solve(&scene, &camera).unwrap().0;
     let images = Images::new(&scene, &camera);
     let (low, high) = images.bounds;
     let leaf = (high - low).length() / 300.0;
     let [a, b] = BOTH.map(|subdivision| {
-        solve(&scene, &camera, &Options { leaf: Some(leaf), window: None, subdivision }).unwrap()
+        solve(&scene, &camera, &Options { leaf: Some(leaf), window: None, subdivision }).unwrap().0
     });
     let mut compared = 0;
     for k in 0..2000 {
