@@ -23,12 +23,13 @@ use hiddenline::writers::NoFills;
 
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
-use super::models::{ModelArgs, ModelFiles};
+use super::input::{Input, InputArgs};
 use super::output::{OutputArgs, OutputOptions};
 use super::page::PageArgs;
 use super::paper::{Run, check_terminal};
 use super::progress::Progress;
 use super::scene::{Subject, count};
+use super::surface::DEFAULT_SAMPLES;
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -44,7 +45,9 @@ Examples:
   hiddenline fill part.stl --depth-cue 0.6 --no-edges -o part.png
       What is far away pales.
   hiddenline fill part.stl --turntable 24 -o turn.svg
-      turn-001.svg to turn-024.svg, once around.";
+      turn-001.svg to turn-024.svg, once around.
+  hiddenline fill --expr \"sinc(r)\" --x=-9:9 --y=-9:9 --palette 5 -o hat.svg
+      A surface z = f(x, y) in five grays.";
 
 /// Fill the visible faces of models with color
 ///
@@ -54,7 +57,7 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub(super) struct FillArgs {
     #[command(flatten)]
-    model: ModelArgs,
+    input: InputArgs,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -88,7 +91,7 @@ struct EdgeArgs {
 
 /// What is to be done.
 pub(super) struct Job {
-    files: ModelFiles,
+    input: Input,
     view: ViewSource,
     fill: FillOptions,
     leaf_mm: f64,
@@ -104,8 +107,8 @@ pub(super) struct Job {
 impl FillArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
-        let Self { model, camera, areas, edges, page, output } = self;
-        let files = model.files()?;
+        let Self { input, camera, areas, edges, page, output } = self;
+        let input = input.input(DEFAULT_SAMPLES)?;
         let output = output.options(false)?;
         if !output.format.has_fills() {
             return Err(NoFills(output.format).to_string().into());
@@ -119,7 +122,7 @@ impl FillArgs {
         let fill = areas.options();
         fill.check().map_err(|error| error.to_string())?;
         Ok(Job {
-            files,
+            input,
             view: camera.view_source(),
             fill,
             leaf_mm: areas.leaf.unwrap_or(pen_width_mm),
@@ -137,13 +140,13 @@ impl FillArgs {
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     check_terminal(&job.output)?;
     let mut run = Run::start(&job.output)?;
-    let read = || job.files.read();
+    let read = || job.input.mesh();
     let lines = job.edges.map(|edges| edges.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
     run.notes = notes;
     let mut fill = job.fill.clone();
-    for path in &job.files.models {
+    for path in job.input.models() {
         let found = material_colors(path);
         fill.materials.extend(found.colors);
         run.notes.warnings.extend(found.warnings);
@@ -221,7 +224,7 @@ impl Picture<'_> {
             pens: job.output.plotting.pens(job.pen_width_mm),
             hidden: Default::default(),
             dash: Default::default(),
-            title: job.files.title(),
+            title: job.input.title(),
             source: source::source(config::arguments()),
         };
         let mut placed = page.plot(&edges, options).with_fills(&page, &filled, job.seam_mm);

@@ -15,7 +15,7 @@ use hiddenline::view::{Camera, Projection};
 
 use super::Job;
 use super::args::EngineName;
-use super::sheets::{Input, Surface, read};
+use super::sheets::{Input, Surface};
 
 /// Most cells along an axis that one cell of the samples asked for is divided into. Kinks and cliffs
 /// are never smooth, however fine the samples.
@@ -45,7 +45,7 @@ pub(super) struct Sampled {
 pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
     let mut refined = 1;
     loop {
-        let (surface, factor) = read(job, refined)?;
+        let (surface, factor) = job.sheets.read(refined)?;
         let camera = job.view.camera(surface.bounds())?;
         let finer = finer(job, &surface, &camera, refined);
         if finer <= refined {
@@ -57,7 +57,7 @@ pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
 
 /// How fine the samples have to be, at most; `refined` if they are fine enough.
 fn finer(job: &Job, surface: &Surface, camera: &Camera, refined: usize) -> usize {
-    let samples = match &job.input {
+    let samples = match &job.sheets.input {
         Input::Formulas { samples, .. } | Input::Parametric { samples, .. } => *samples,
         _ => return refined,
     };
