@@ -92,6 +92,43 @@ fn inks_lie_beside_each_other_whatever_the_engine() {
     }
 }
 
+/// Layers of the cube from above, its top in `paint` and two sides in a quarter of that.
+fn inked(paint: [u8; 3], palette: Palette) -> Vec<(String, [u8; 3], usize)> {
+    let (scene, camera) = built(&cube());
+    let (light, paint, palette) = (Some(DVec3::Z), Some(paint), Some(palette));
+    let options = FillOptions { light, paint, palette, ..FillOptions::default() };
+    let layers = fill(&scene, &camera, &options).unwrap().layers;
+    layers.into_iter().map(|layer| (layer.name, layer.color, layer.fills.len())).collect()
+}
+
+#[test]
+fn each_face_has_the_nearest_ink_and_of_two_the_first() {
+    let layer = |name: &str, color, n| (name.to_owned(), color, n);
+    // 10 from both; what is left of the sides is nearest to black.
+    let inks = vec![[90, 100, 100], [110, 100, 100], [0, 0, 0]];
+    let found = inked([100; 3], Palette::Inks(inks));
+    // The sides meet, and are one area.
+    assert_eq!(found, [layer("ink1", [90, 100, 100], 1), layer("ink3", [0, 0, 0], 1)]);
+    // Once 30 is farther than three times 12.
+    let inks = vec![[130, 100, 100], [112, 112, 112], [0, 0, 0]];
+    let found = inked([100; 3], Palette::Inks(inks));
+    assert_eq!(found, [layer("ink2", [112; 3], 1), layer("ink3", [0; 3], 1)]);
+}
+
+#[test]
+fn grays_go_from_the_darkest_tone_to_the_lightest() {
+    // The mean of the top's is 200, that of the sides' 50.
+    let found = |n| -> Vec<(String, [u8; 3])> {
+        let layers = inked([220, 190, 190], Palette::Grays(n)).into_iter();
+        layers.map(|(name, color, _)| (name, color)).collect()
+    };
+    let layer = |name: &str, gray| (name.to_owned(), [gray; 3]);
+    assert_eq!(found(1), [layer("ink1", 125)]);
+    assert_eq!(found(2), [layer("ink1", 50), layer("ink2", 200)]);
+    assert_eq!(found(3), [layer("ink1", 50), layer("ink3", 200)]);
+    assert_eq!(found(4), [layer("ink1", 50), layer("ink4", 200)]);
+}
+
 #[test]
 fn grays_are_counted_and_a_palette_does_not_go_with_debugging() {
     let (scene, camera) = built(&cube());

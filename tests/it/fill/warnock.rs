@@ -4,10 +4,10 @@ use super::judge::judged;
 use super::regions::warnocks_pair;
 use super::{built, model, painted};
 use crate::image::face;
-use crate::scenes::{number_of_scenes, random};
+use crate::scenes::{Model, number_of_scenes, orthographic, random};
 use glam::{DVec2, dvec2};
 use hiddenline::engines::face::images::Images;
-use hiddenline::engines::face::warnock::{Options, Subdivision, solve};
+use hiddenline::engines::face::warnock::{Counts, Options, Subdivision, solve};
 use hiddenline::engines::face::{Painting, weiler_atherton};
 use hiddenline::engines::image::{self, PixelMap, Raster, painter};
 use hiddenline::framing::Framing;
@@ -128,4 +128,55 @@ fn both_ways_of_dividing_give_one_picture() {
         }
     }
     assert!(compared > 1000, "only {compared} points compared");
+}
+
+/// What a window with its lower left corner at `low` takes, seen against z on faces.
+fn windows(faces: &[Vec<[f64; 3]>], low: [f64; 2], size: f64, how: Subdivision) -> Counts {
+    let mut model = Model::default();
+    faces.iter().for_each(|face| model.face(face));
+    let sight = orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+    let (scene, camera) = built(&model.seen_by("windows", sight));
+    let low = camera.image(glam::DVec3::new(low[0], low[1], 0.0));
+    let window = Some((low, low + size));
+    let options = Options { leaf: Some(size / 16.0), window, subdivision: how };
+    solve(&scene, &camera, &options).unwrap().1
+}
+
+/// A face over a rectangle in x and y, with a height at each x.
+fn ramp(x: [f64; 2], y: [f64; 2], z: impl Fn(f64) -> f64) -> Vec<[f64; 3]> {
+    let corners = [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])];
+    corners.map(|(x, y)| [x, y, z(x)]).to_vec()
+}
+
+#[test]
+fn a_window_behind_a_surrounding_face_is_not_divided() {
+    let sides = [-10.0, 10.0];
+    // They cross at x = -4/3, so only depths tell which one is in front in a window.
+    let near = ramp(sides, sides, |x| x / 2.0);
+    let far = ramp(sides, [-9.0, 9.5], |x| -1.0 - x / 4.0);
+    let covered = Counts { windows: 1, covered: 1, ..Counts::default() };
+    // All of the far face is behind the nearer one's farthest point; then only in the window.
+    for low in [[6.0, 1.0], [2.0, 1.0]] {
+        for faces in [[near.clone(), far.clone()], [far.clone(), near.clone()]] {
+            assert_eq!(windows(&faces, low, 2.0, Subdivision::Regular), covered, "{low:?}");
+        }
+    }
+    // Of several that surround it the nearest hides the others, whatever comes first.
+    let flat = |z: f64, reach: f64| ramp([-reach, reach], [-reach, reach], |_| z);
+    let mut faces = vec![flat(1.0, 10.0), flat(3.0, 9.0), flat(2.0, 0.5)];
+    for _ in 0..3 {
+        faces.rotate_left(1);
+        assert_eq!(windows(&faces, [-1.0, -1.0], 2.0, Subdivision::Regular), covered);
+    }
+}
+
+#[test]
+fn windows_divided_at_vertices_are_fewer() {
+    let faces = [ramp([0.0, 5.0], [0.0, 5.0], |_| 0.0), ramp([5.0, 16.0], [5.0, 16.0], |_| 1.0)];
+    // At the common corner all four parts are simple: a face each, or nothing.
+    let found = windows(&faces, [0.0, 0.0], 16.0, Subdivision::Vertices);
+    assert_eq!([found.windows, found.divided, found.empty, found.leaves], [5, 1, 2, 0]);
+    let found = windows(&faces, [0.0, 0.0], 16.0, Subdivision::Regular);
+    // Only the fourth middle, after 8, 4 and 6, is the corner.
+    assert_eq!([found.windows, found.divided, found.leaves], [17, 4, 0]);
 }
