@@ -184,13 +184,9 @@ fn agreement(scene: &Scene, camera: &Camera, slack: f64) -> Result<Agreement, St
 #[test]
 fn borders_of_random_scenes_are_strokes_and_strokes_are_borders() {
     let mut sum = Agreement::default();
-    let (mut n_cut, mut left_out) = (0, 0);
+    let mut n_cut = 0;
     for seed in 0..number_of_scenes(300) {
         let test = random(seed);
-        if test.is_in_tenths {
-            left_out += 1;
-            continue;
-        }
         let (scene, camera) = built(&test);
         let found = agreement(&scene, &camera, 1e-9)
             .unwrap_or_else(|problem| panic!("{}: {problem}\n{test:?}", test.name));
@@ -200,7 +196,7 @@ fn borders_of_random_scenes_are_strokes_and_strokes_are_borders() {
         sum.strokes += found.strokes;
         sum.amid += found.amid;
     }
-    eprintln!("{sum:?}; {n_cut} scenes cut at the near plane, {left_out} nearly aligned left out");
+    eprintln!("{sum:?}; {n_cut} scenes cut at the near plane");
     assert!(sum.borders > 10_000 && sum.strokes > 10_000 && sum.near_plane > 100, "{sum:?}");
     assert!(sum.amid * 5 < sum.strokes, "{sum:?}");
 }

@@ -64,6 +64,57 @@ fn the_farthest_face_becomes_paper_with_a_full_depth_cue() {
     assert!(filled.layers[0].fills.iter().any(|area| area.color != [255; 3]));
 }
 
+/// Two squares over each other, seen from above: 10 by 10 at height 0, and 2 by 2 at height 5 and
+/// more, tilted by `tilt`, wound the other way round if `is_turned`.
+fn squares(tilt: f64, is_turned: bool) -> TestScene {
+    let mut model = Model::default();
+    model.face(&[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0], [0.0, 10.0, 0.0]]);
+    let high = 5.0 + 2.0 * tilt;
+    let mut corners = [[4.0, 4.0, 5.0], [6.0, 4.0, high], [6.0, 6.0, high], [4.0, 6.0, 5.0]];
+    if is_turned {
+        corners.reverse();
+    }
+    model.face(&corners);
+    model.seen_by("squares", orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]))
+}
+
+/// Color and area of each area.
+fn colored(scene: &TestScene, options: FillOptions) -> Vec<([u8; 3], f64)> {
+    let (scene, camera) = built(scene);
+    let light = Some(DVec3::Z);
+    let filled = fill(&scene, &camera, &FillOptions { light, ..options }).unwrap();
+    let layers = filled.layers.iter();
+    layers.map(|layer| (layer.color, area(&layer.fills))).collect()
+}
+
+#[test]
+fn an_ink_has_a_hole_where_another_is_seen() {
+    let palette = Some(Palette::Grays(2));
+    let found = colored(&squares(1.0, false), FillOptions { palette, ..FillOptions::default() });
+    let areas: Vec<f64> = found.iter().map(|(_, area)| (area * 1e9).round() / 1e9).collect();
+    assert_eq!(areas, [4.0, 96.0]);
+}
+
+#[test]
+fn what_is_near_keeps_its_color_and_what_is_far_pales() {
+    let (scene, camera) = built(&squares(0.0, false));
+    let (light, paint) = (Some(DVec3::Z), Some([200, 100, 40]));
+    for (depth_cue, far) in [(0.0, [200, 100, 40]), (1.0, [255; 3])] {
+        let options = FillOptions { light, paint, depth_cue, ..FillOptions::default() };
+        let filled = fill(&scene, &camera, &options).unwrap();
+        let colors: Vec<[u8; 3]> = filled.layers[0].fills.iter().map(|area| area.color).collect();
+        assert_eq!(colors, [far, [200, 100, 40]]);
+    }
+}
+
+#[test]
+fn both_sides_of_a_face_are_lit_alike() {
+    let palette = Some(Palette::Grays(2));
+    let options = FillOptions { palette, ..FillOptions::default() };
+    let [front, back] = [false, true].map(|side| colored(&squares(1.0, side), options.clone()));
+    assert_eq!(front, back);
+}
+
 #[test]
 fn inks_lie_beside_each_other_whatever_the_engine() {
     let Some(mesh) = model("spot_control_quads.obj") else { return };

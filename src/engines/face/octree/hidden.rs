@@ -47,7 +47,6 @@ impl Tree {
         let mut seams = Seams::new(&occupancy);
         let mut missing = self.of_face.clone();
         let mut missing_of_triangle = self.of_triangle.clone();
-        let mut is_painted = vec![false; self.of_triangle.len()];
         let mut hidden =
             Hidden { hidden_fragments: self.fragments().len() as u64, ..Hidden::default() };
         let mut leaves = Leaves::new(self, &planes, Order::NearToFar);
@@ -80,11 +79,9 @@ impl Tree {
                             occupancy.cover(&polygon);
                         }
                         seen.push((kept, facing));
-                        is_painted[triangle as usize] = true;
                     }
                 }
-                // Where all of it is hidden it would only open seams on what is covered.
-                if missing_of_triangle[triangle as usize] == 0 && is_painted[triangle as usize] {
+                if missing_of_triangle[triangle as usize] == 0 && facing != Sign::Zero {
                     view.add_triangle(&mut seams, &mut occupancy, triangle, facing);
                 }
                 if missing[face as usize] == 0 && self.of_face[face as usize] > 1 {
