@@ -20,7 +20,7 @@
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
 
 use crate::mesh::Mesh;
-use crate::predicates::{Sight, Sign};
+use crate::predicates::{Sight, Sign, exact};
 use crate::scene::Scene;
 use crate::strokes::StrokeKind;
 use crate::topology::EdgeUse;
@@ -346,11 +346,14 @@ impl<'a> ViewedScene<'a> {
         let faces = self.scene.triangle_faces();
         let first = faces.partition_point(|&of| of < face);
         let mut triangles = (first..faces.len()).take_while(|&triangle| faces[triangle] == face);
-        let along = triangles
-            .find(|&t| ends.iter().all(|end| self.scene.triangles()[t].contains(end)))
-            .map(|triangle| self.triangle_turns[triangle]);
+        let along =
+            triangles.find(|&t| ends.iter().all(|end| self.scene.triangles()[t].contains(end)));
+        let Some(triangle) = along else { return self.facing(face) };
+        let turn = self.triangle_turns[triangle];
+        let corners = self.scene.triangles()[triangle];
+        let [p, q, r] = corners.map(|vertex| self.scene.mesh().positions()[vertex as usize]);
         // A triangle without area faces nowhere.
-        along.filter(|turn| *turn != Sign::Zero).unwrap_or_else(|| self.facing(face))
+        if turn == Sign::Zero && exact::collinear(p, q, r) { self.facing(face) } else { turn }
     }
 
     /// The lines of intersection to draw beside the edges that are `drawn`: those that are part of

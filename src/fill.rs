@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::engines::face::region::Region;
-use crate::engines::face::{Engine, FaceError, Painting, Prepared, Settings, merge};
+use crate::engines::face::{Engine, FaceError, Painting, Prepared, Settings, Work, merge};
 use crate::light::{DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes};
 use crate::mesh::Part;
 use crate::plot::Fills;
@@ -115,6 +115,8 @@ pub struct Filled {
     pub is_disjoint: bool,
     /// How many pieces the engine made.
     pub n_pieces: usize,
+    /// What the engine counted, if it was asked to find the regions.
+    pub work: Option<Work>,
 }
 
 impl Filled {
@@ -151,8 +153,9 @@ pub fn fill_prepared(
     options: &FillOptions,
 ) -> Result<Filled, FillError> {
     options.check()?;
-    let painting = prepared.solve(camera, &options.settings)?;
-    Ok(fill_painting(prepared.scene(), camera, &painting, prepared.engine(), options))
+    let (painting, work) = prepared.solve(camera, &options.settings)?;
+    let filled = fill_painting(prepared.scene(), camera, &painting, prepared.engine(), options);
+    Ok(Filled { work: Some(work), ..filled })
 }
 
 impl FillOptions {
@@ -209,7 +212,7 @@ pub fn fill_painting(
         }
     };
     let is_disjoint = painting.is_disjoint || wants_disjoint && !debugs_pieces;
-    Filled { layers, engine, is_disjoint, n_pieces }
+    Filled { layers, engine, is_disjoint, n_pieces, work: None }
 }
 
 /// The color of each piece.

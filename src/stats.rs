@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use crate::engines::face::Work;
+
 /// Counts and times of one run, serialized with fixed key names.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Stats {
@@ -101,6 +103,9 @@ pub struct Counts {
     pub sight_lines: u64,
     /// Pairs of triangles whose boxes touch, tested for lines of intersection.
     pub intersection_pairs: u64,
+    /// What the face engine counted, where areas are filled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fill: Option<Work>,
 }
 
 /// Does `work` and adds its wall time to `seconds`.

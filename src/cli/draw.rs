@@ -91,7 +91,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let read = || job.files.read();
     let lines = Some(job.draw.lines);
     let Subject { scene, camera, notes } =
-        Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
+        Subject::read(read, &job.view, lines, !job.draw.exact, &run.progress, &mut run.stats)?;
     run.notes = notes;
     run.progress.stage("drawing");
     // A page that cannot be made is reported when the drawing is placed on it.

@@ -24,12 +24,13 @@ use hiddenline::writers::NoFills;
 
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
-use super::models::{ModelArgs, ModelFiles};
+use super::input::{Input, InputArgs};
 use super::output::{OutputArgs, OutputOptions};
 use super::page::PageArgs;
 use super::paper::Run;
 use super::progress::Progress;
 use super::scene::{Subject, count};
+use super::surface::DEFAULT_SAMPLES;
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -45,7 +46,9 @@ Examples:
   hiddenline fill part.stl --depth-cue 0.6 --no-edges -o part.png
       What is far away pales.
   hiddenline fill part.stl --turntable 24 -o turn.svg
-      turn-001.svg to turn-024.svg, once around.";
+      turn-001.svg to turn-024.svg, once around.
+  hiddenline fill --expr \"sinc(r)\" --x=-9:9 --y=-9:9 --palette 5 -o hat.svg
+      A surface z = f(x, y) in five grays.";
 
 /// Fill the visible faces of models with color
 ///
@@ -55,7 +58,7 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub(super) struct FillArgs {
     #[command(flatten)]
-    model: ModelArgs,
+    input: InputArgs,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -89,7 +92,7 @@ struct EdgeArgs {
 
 /// What is to be done.
 pub(super) struct Job {
-    files: ModelFiles,
+    input: Input,
     view: ViewSource,
     fill: FillOptions,
     leaf_mm: f64,
@@ -105,8 +108,8 @@ pub(super) struct Job {
 impl FillArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
-        let Self { model, camera, areas, edges, page, output } = self;
-        let files = model.files()?;
+        let Self { input, camera, areas, edges, page, output } = self;
+        let input = input.input(DEFAULT_SAMPLES)?;
         let output = output.options(false)?;
         if !output.format.has_fills() {
             return Err(NoFills(output.format).to_string().into());
@@ -120,7 +123,7 @@ impl FillArgs {
         let fill = areas.options();
         fill.check().map_err(|error| error.to_string())?;
         Ok(Job {
-            files,
+            input,
             view: camera.view_source(),
             fill,
             leaf_mm: areas.leaf.unwrap_or(pen_width_mm),
@@ -137,13 +140,13 @@ impl FillArgs {
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
-    let read = || job.files.read();
+    let read = || job.input.mesh();
     let lines = job.edges.map(|edges| edges.lines);
     let Subject { scene, camera, notes } =
-        Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
+        Subject::read(read, &job.view, lines, lines.is_some(), &run.progress, &mut run.stats)?;
     run.notes = notes;
     let mut fill = job.fill.clone();
-    for path in &job.files.models {
+    for path in job.input.models() {
         let found = material_colors(path);
         fill.materials.push(found.colors);
         run.notes.warnings.extend(found.warnings);
@@ -197,6 +200,7 @@ impl Picture<'_> {
         let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
             fill_prepared(self.prepared, camera, &options)
         })?;
+        run.stats.counts.fill = filled.work;
         let page = match &self.frame {
             Some(_) => rough,
             None => {
@@ -220,7 +224,7 @@ impl Picture<'_> {
             pens: job.output.plotting.pens(job.pen_width_mm),
             hidden: Default::default(),
             dash: Default::default(),
-            title: job.files.title(),
+            title: job.input.title(),
             source: source::source(config::arguments()),
         };
         let mut placed = page.plot(&edges, options).with_fills(&page, &filled, job.seam_mm);

@@ -4,6 +4,7 @@ mod camera;
 mod config;
 mod draw;
 mod fill;
+mod input;
 mod machine;
 mod messages;
 mod models;

@@ -10,20 +10,17 @@ use std::time::Instant;
 use clap::Args;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::formula::{Formula, Variables};
-use hiddenline::mesh::Mesh;
 use hiddenline::preview::{self, Options};
 use hiddenline::stats::peak_bytes;
-use hiddenline::surface::Grid;
 
 use self::picture::PictureArgs;
 use super::camera::{CameraArgs, ViewSource};
-use super::models::{ModelArgs, ModelFiles};
-use super::paper::{Notes, start_threads};
+use super::input::{Input, InputArgs};
+use super::paper::start_threads;
 use super::paths::is_dash;
 use super::progress::Progress;
-use super::scene::Subject;
-use super::{Refused, messages, output, surface};
+use super::scene::{Subject, count};
+use super::{Refused, messages, output};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,22 +37,22 @@ Examples:
   hiddenline preview part.stl --tone -o tone.png
       How light each point is, as gray, for hatching.
   hiddenline preview --expr \"sin(r)/r\" --x=-9:9 --y=-9:9 -o hat.png
-      A surface z = f(x, y).";
+      A surface z = f(x, y).
+  hiddenline preview --grid heights.tif --view isometric -o terrain.png
+      Heights from a file.";
 
-/// Largest height of a surface as a part of the longer side of its base.
-const SURFACE_HEIGHT: f64 = 0.4;
+/// Samples of a surface along each axis, unless given: more than lines need, since faces are seen.
+const DEFAULT_SAMPLES: usize = 200;
 
 /// Make a shaded picture of models
 ///
 /// Reads what `draw` reads, looks from where `draw` looks, and writes a PNG, for a look before a pen
 /// begins. All engines decide each pixel alike.
 #[derive(Args)]
-#[command(after_help = EXAMPLES, mut_arg("models", |models| models.required(false)))]
+#[command(after_help = EXAMPLES)]
 pub(super) struct PreviewArgs {
     #[command(flatten)]
-    model: ModelArgs,
-    #[command(flatten)]
-    formula: FormulaArgs,
+    input: InputArgs,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -75,26 +72,6 @@ pub(super) struct PreviewArgs {
     quiet: bool,
 }
 
-#[derive(Args)]
-#[command(next_help_heading = "Surface")]
-struct FormulaArgs {
-    /// Show the surface z = EXPR, a formula of x, y, r and theta, instead of models
-    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, conflicts_with = "models")]
-    expr: Option<String>,
-    /// Range of x
-    #[arg(long, value_name = "A:B", value_parser = surface::range, allow_hyphen_values = true)]
-    #[arg(requires = "expr", default_value = "-5:5")]
-    x: (f64, f64),
-    /// Range of y
-    #[arg(long, value_name = "A:B", value_parser = surface::range, allow_hyphen_values = true)]
-    #[arg(requires = "expr", default_value = "-5:5")]
-    y: (f64, f64),
-    /// Samples along both axes, or along x and along y
-    #[arg(long, value_name = "N|NxM", value_parser = surface::samples, requires = "expr")]
-    #[arg(default_value = "200")]
-    samples: (usize, usize),
-}
-
 /// What is to be done.
 pub(super) struct Job {
     input: Input,
@@ -109,28 +86,11 @@ pub(super) struct Job {
     quiet: bool,
 }
 
-enum Input {
-    Files(ModelFiles),
-    Formula { formula: Formula, x: (f64, f64), y: (f64, f64), samples: (usize, usize) },
-}
-
 impl PreviewArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
-        let Self { model, formula, camera, picture, output, threads, stats, quiet } = self;
-        let input = match formula.expr {
-            Some(text) => Input::Formula {
-                formula: Formula::parse(&text, Variables::Plane)
-                    .map_err(|error| format!("in the formula, {error}"))?,
-                x: formula.x,
-                y: formula.y,
-                samples: formula.samples,
-            },
-            None => Input::Files(model.files()?),
-        };
-        if matches!(&input, Input::Files(files) if files.models.is_empty()) {
-            return Err("give models, or a surface by --expr".into());
-        }
+        let Self { input, camera, picture, output, threads, stats, quiet } = self;
+        let input = input.input(DEFAULT_SAMPLES)?;
         Ok(Job {
             input,
             view: camera.view_source(),
@@ -153,8 +113,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     }
     let mut stats = start_threads(job.threads)?;
     let progress = Progress::new(job.quiet);
+    let read = || job.input.mesh();
     let Subject { scene, camera, notes } =
-        Subject::read(|| job.input.mesh(), &job.view, job.edges, &progress, &mut stats)?;
+        Subject::read(read, &job.view, job.edges, job.edges.is_some(), &progress, &mut stats)?;
     progress.stage("drawing");
     let edges = job.edges.map(|lines| {
         let options = DrawOptions { lines, ..DrawOptions::default() };
@@ -184,10 +145,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         ));
     }
     if job.stats {
-        stats.vertices = scene.mesh().positions().len();
-        stats.faces = scene.mesh().n_faces();
-        stats.triangles = scene.triangles().len();
-        stats.edges = scene.topology().edges().len();
+        count(&mut stats, &scene);
         stats.strokes = edges.as_ref().map_or(0, |edges| edges.len());
         stats.points = edges.as_ref().map_or(0, |edges| edges.n_points());
         stats.peak_bytes = peak_bytes();
@@ -196,27 +154,4 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         messages::plain(stats);
     }
     Ok(())
-}
-
-impl Input {
-    fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
-        match self {
-            Self::Files(files) => files.read(),
-            Self::Formula { formula, x, y, samples } => {
-                let mut grid = Grid::sample(formula, *x, *y, *samples)?;
-                let (low, high) =
-                    grid.heights().ok_or("the formula has no value anywhere in the range")?;
-                let side = (x.1 - x.0).max(y.1 - y.0);
-                if high > low {
-                    grid.scale_heights(SURFACE_HEIGHT * side / (high - low));
-                }
-                let (mesh, _) = Mesh::new(grid.to_soup())?;
-                if mesh.n_faces() == 0 {
-                    return Err("the surface has no cell without holes; give more --samples".into());
-                }
-                let summary = format!("surface: {} faces", mesh.n_faces());
-                Ok((mesh, Notes { summary, ..Notes::default() }))
-            }
-        }
-    }
 }

@@ -21,11 +21,13 @@ pub(super) struct Subject {
 }
 
 impl Subject {
-    /// Reads a mesh and finds its edges, and where faces cross if `lines` ask for that.
+    /// Reads a mesh and finds its edges, where faces cross if `lines` ask for that, and where bent
+    /// faces are folded if there are lines that may run there.
     pub(super) fn read(
         mesh: impl FnOnce() -> Result<(Mesh, Notes), Box<dyn Error>>,
         view: &ViewSource,
         lines: Option<LineSelection>,
+        finds_bends: bool,
         progress: &Progress,
         stats: &mut Stats,
     ) -> Result<Self, Box<dyn Error>> {
@@ -36,6 +38,7 @@ impl Subject {
         let crosses = lines.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
         let scene = timed(&mut stats.seconds.topology, || {
             let scene = Scene::new(mesh);
+            let scene = if finds_bends { scene.with_bends() } else { scene };
             if crosses { scene.with_intersections() } else { scene }
         });
         Ok(Self { scene, camera, notes })

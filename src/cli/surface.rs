@@ -1,11 +1,11 @@
 //! `hiddenline surface`: from a formula or a grid of heights to a drawing's file.
 
 mod args;
+mod sheet_args;
 mod sheets;
 mod smoothness;
 
 use std::error::Error;
-use std::path::Path;
 
 use glam::DVec2;
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
@@ -19,13 +19,15 @@ use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
-use hiddenline::surface::{Grid, LatticeLines, LinedMesh, Placement};
+use hiddenline::surface::{Grid, LatticeLines};
 use hiddenline::view::{Camera, Projection};
 use hiddenline::writers::Format;
 
-use self::args::{Aspect, EngineName, Levels};
-pub(super) use self::args::{SurfaceArgs, range, samples};
-use self::sheets::{Input, Surface};
+pub(super) use self::args::SurfaceArgs;
+use self::args::{EngineName, Levels};
+pub(super) use self::sheet_args::{DEFAULT_SAMPLES, SheetArgs};
+pub(super) use self::sheets::Sheets;
+use self::sheets::{NO_CELLS, Surface};
 use self::smoothness::Sampled;
 use super::camera::ViewSource;
 use super::output::OutputOptions;
@@ -46,10 +48,7 @@ const FEW_POINTS: usize = 12_000;
 
 /// What is to be done.
 pub(super) struct Job {
-    input: Input,
-    placement: Placement,
-    z_scale: f64,
-    aspect: Aspect,
+    sheets: Sheets,
     view: ViewSource,
     lines: Lines,
     levels: Option<Levels>,
@@ -95,7 +94,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let usual = joining(&drawing, grid.is_some(), &camera);
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
-    run.notes.summary = format!("{}: {}", title(job), surface.described());
+    run.notes.summary = format!("{}: {}", job.sheets.title(), surface.described());
     run.draw(&drawing, &camera, &job.page, plot_options(job), &usual)
 }
 
@@ -194,21 +193,9 @@ fn draw_by_mesh(
     let n_triangles = 2 * surface.lattices().iter().map(cells).sum::<u64>();
     too_many(n_triangles).map_or(Ok(()), Err)?;
     let scene = timed(&mut seconds.topology, || -> Result<_, Box<dyn Error>> {
-        let mut mesh = LinedMesh::default();
-        match surface {
-            Surface::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, &lattice)),
-            Surface::Trimmed(grids) => {
-                grids.iter().for_each(|grid| mesh.push_trimmed(grid, &lattice));
-            }
-            Surface::Points { points, triangles } => {
-                mesh.push_triangles(points, triangles, job.all_edges);
-            }
-            Surface::Lattice { n_columns, points } => {
-                mesh.push_lattice(*n_columns, points, &lattice);
-            }
-        }
+        let mut mesh = surface.lined(&lattice);
         if mesh.n_triangles() == 0 {
-            return Err("no four neighboring samples have a height: nothing to draw".into());
+            return Err(NO_CELLS.into());
         }
         if let Some(levels) = &job.levels {
             let (low, high) = surface.bounds();
@@ -266,21 +253,8 @@ fn plot_options(job: &Job) -> PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: HiddenLines::None,
         dash: Dash { dash_mm: 2.5, gap_mm: 1.25 },
-        title: title(job),
+        title: job.sheets.title(),
         pens: job.output.plotting.pens_for_surface(job.underside, job.pen_width_mm),
         source: source::source(config::arguments()),
-    }
-}
-
-fn title(job: &Job) -> String {
-    match &job.input {
-        Input::Formulas { texts, .. } => {
-            format!("z = {}", texts.iter().map(|text| text.trim()).collect::<Vec<_>>().join(", "))
-        }
-        Input::Parametric { .. } => "parametric surface".to_owned(),
-        Input::File(path) | Input::Points(path) => {
-            let name = path.file_name().unwrap_or(path.as_os_str());
-            Path::new(name).display().to_string()
-        }
     }
 }

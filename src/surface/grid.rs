@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::formula::Formula;
-use crate::mesh::PolygonSoup;
 
 /// Most samples of a grid: 10⁸.
 pub const MAX_SAMPLES: usize = 100_000_000;
@@ -219,29 +218,6 @@ impl Grid {
             n if n == self.zs.len() => Holes::All,
             _ => Holes::Some,
         }
-    }
-
-    /// The triangles of the surface, for the engines that draw meshes. Vertex numbers are sample
-    /// numbers. An edge is a grid line when its ends agree in x or in y, otherwise a diagonal,
-    /// which hides but is not drawn. Samples without a height stand at height 0 and have no faces.
-    pub fn to_soup(&self) -> PolygonSoup {
-        let n = self.xs.len() as u32;
-        let positions = (0..self.zs.len() as u32)
-            .map(|k| self.point(k))
-            .map(|p| if p.z.is_nan() { p.with_z(0.0) } else { p })
-            .collect();
-        let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
-        for j in 0..self.ys.len() as u32 - 1 {
-            for i in 0..n - 1 {
-                let k = j * n + i;
-                for triangle in [[k, k + 1, k + n + 1], [k, k + n + 1, k + n]] {
-                    if triangle.iter().all(|&k| !self.zs[k as usize].is_nan()) {
-                        soup.push_face(&triangle);
-                    }
-                }
-            }
-        }
-        soup
     }
 }
 

@@ -124,20 +124,28 @@ impl LinedMesh {
         self.triangles.len()
     }
 
+    /// The triangles alone, with vertices at the same place made one.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, or more than a mesh can have.
+    pub fn into_mesh(self) -> Result<Mesh, MeshError> {
+        let mut soup = PolygonSoup { positions: self.positions, ..PolygonSoup::default() };
+        for corners in &self.triangles {
+            soup.push_face(corners);
+        }
+        Ok(Mesh::new(soup)?.0)
+    }
+
     /// Makes vertices at the same place one and finds the edges that lie on lines.
     ///
     /// # Errors
     /// Coordinates that are not finite, or more than a mesh can have.
     pub fn into_scene(self) -> Result<LinedScene, MeshError> {
         let key = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
-        let mut soup = PolygonSoup { positions: self.positions, ..PolygonSoup::default() };
-        for corners in &self.triangles {
-            soup.push_face(corners);
-        }
+        let lines = self.lines.clone();
         let ends: Vec<[DVec3; 2]> =
-            self.lines.iter().map(|line| line.ends.map(|k| soup.positions[k as usize])).collect();
-        let (mesh, _) = Mesh::new(soup)?;
-        let scene = Scene::new(mesh);
+            lines.iter().map(|line| line.ends.map(|k| self.positions[k as usize])).collect();
+        let scene = Scene::new(self.into_mesh()?);
         let vertices: FxHashMap<[u64; 3], u32> =
             scene.mesh().positions().iter().zip(0..).map(|(p, vertex)| (key(*p), vertex)).collect();
         let edge = |[a, b]: [DVec3; 2]| {
@@ -145,7 +153,7 @@ impl LinedMesh {
         };
         let lines = ends
             .iter()
-            .zip(&self.lines)
+            .zip(&lines)
             .filter_map(|(ends, line)| Some(DrawnEdge { edge: edge(*ends)?, kind: line.kind }))
             .collect();
         Ok(LinedScene { scene, lines })

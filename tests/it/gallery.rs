@@ -1,6 +1,7 @@
 //! The pictures in `plots/` are what the examples draw. `UPDATE=1 cargo test` draws them anew.
 
 use std::path::Path;
+use std::process::Command;
 
 use hiddenline::plot::Plot;
 use hiddenline::writers::png::{self, Resolution};
@@ -67,19 +68,70 @@ pictures! {
     torus_knot the_knot_is_up_to_date "../../examples/torus_knot.rs";
 }
 
+/// The names of the files in a folder that have an extension, without it.
+fn names(folder: &str, extension: &str) -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = folder.read_dir().expect("the folder is there");
+    let paths = entries.map(|entry| entry.expect("it can be listed").path());
+    let mut names: Vec<_> = paths
+        .filter(|path| path.extension().is_some_and(|found| found == extension))
+        .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Columns, rows and pixels of a PNG.
+fn pixels(bytes: &[u8]) -> (u32, u32, Vec<u8>) {
+    let decoder = ::png::Decoder::new(std::io::Cursor::new(bytes));
+    let mut reader = decoder.read_info().expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("a picture");
+    (info.width, info.height, pixels)
+}
+
+/// What a picture is made by is told in the README, and run from there.
+#[test]
+fn previews_are_up_to_date() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).expect("a README");
+    let readme = readme.replace("\\\n", " ");
+    let names = names("plots/preview", "png");
+    assert!(!names.is_empty());
+    for name in names {
+        let end = format!("-o {name}.png");
+        let arguments = readme
+            .lines()
+            .filter_map(|line| line.strip_prefix("cargo run --release -- ")?.strip_suffix(&end))
+            .find(|arguments| arguments.starts_with("preview "))
+            .unwrap_or_else(|| panic!("no command in the README makes {name}.png"));
+        let output = Command::new(env!("CARGO_BIN_EXE_hiddenline"))
+            .args(arguments.split_whitespace())
+            .args(["-o", "-"])
+            .current_dir(root)
+            .output()
+            .expect("the program starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let path = root.join("plots/preview").join(name).with_extension("png");
+        if std::env::var_os("UPDATE").is_some() {
+            std::fs::write(&path, &output.stdout).expect("plots/ can be written");
+        }
+        let kept = pixels(&std::fs::read(&path).expect("the picture is in plots/"));
+        let drawn = pixels(&output.stdout);
+        assert_eq!((kept.0, kept.1), (drawn.0, drawn.1), "{}", path.display());
+        let different = kept.2.iter().zip(&drawn.2).filter(|(kept, drawn)| kept != drawn).count();
+        assert!(
+            different == 0,
+            "{} is not what the README's command makes: {different} of {} bytes differ; \
+             UPDATE=1 makes it anew",
+            path.display(),
+            kept.2.len(),
+        );
+    }
+}
+
 #[test]
 fn every_picture_has_its_example() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let names = |folder: &str, extension: &str| -> Vec<String> {
-        let entries = root.join(folder).read_dir().expect("the folder is there");
-        let paths = entries.map(|entry| entry.expect("it can be listed").path());
-        let mut names: Vec<_> = paths
-            .filter(|path| path.extension().is_some_and(|found| found == extension))
-            .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    };
     let examples = names("examples", "rs");
     assert_eq!(names("plots", "svg"), examples);
     assert_eq!(names("plots", "png"), examples);

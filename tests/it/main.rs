@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod appel;
+mod bends;
 mod cli;
 mod closed_forms;
 mod drawings;

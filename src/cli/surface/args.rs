@@ -1,22 +1,16 @@
 //! What is typed after `hiddenline surface`, and what it means.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 use hiddenline::dressing::Titles;
 use hiddenline::engines::surface::Lines;
-use hiddenline::formula::{Formula, Variables};
-use hiddenline::surface::Placement;
 
 use super::Job;
+use super::sheet_args::{Aspect, DEFAULT_SAMPLES, SheetArgs};
 use super::sheets::Input;
 use crate::cli::camera::CameraArgs;
 use crate::cli::output::OutputArgs;
 use crate::cli::page::PageArgs;
 use crate::cli::{Refused, values};
-
-/// Samples along each axis, unless given.
-const DEFAULT_SAMPLES: usize = 81;
 
 /// Level curves, unless given.
 const DEFAULT_LEVELS: u16 = 12;
@@ -69,54 +63,8 @@ struct InputArgs {
     /// Further formulas, one for each sheet; put one that begins with a minus into parentheses
     #[arg(value_name = "EXPR")]
     more: Vec<String>,
-    /// Heights from a file; `-` is standard input
-    ///
-    /// Rows of numbers, ESRI ASCII grid, NPY, or a gray PNG or TIFF, by the file's content.
-    #[arg(long, value_name = "FILE", conflicts_with = "expression")]
-    grid: Option<PathBuf>,
-    /// Scattered points from a file with x, y and z on each line; `-` is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["expression", "grid", "x", "y"])]
-    points: Option<PathBuf>,
-    /// Three formulas of u and v, for x, y and z
-    #[arg(long, value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["expression", "grid", "points", "x", "y"])]
-    parametric: Option<Vec<String>>,
-    /// Range of u; its ends may be formulas such as 2*pi [default: 0:1]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
-    #[arg(requires = "parametric")]
-    u: Option<(f64, f64)>,
-    /// Range of v [default: 0:1]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
-    #[arg(requires = "parametric")]
-    v: Option<(f64, f64)>,
-    /// Where the surface is, as a formula of x and y that is true there, such as x^2+y^2<=9
-    ///
-    /// The surface is cut along the border of this domain. The border is drawn with grid lines, and
-    /// by --lines border.
-    #[arg(long = "where", value_name = "EXPR", requires = "expression")]
-    domain: Option<String>,
-    /// Range of x [default: -5:5, for a file 0 to columns - 1]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
-    x: Option<(f64, f64)>,
-    /// Range of y [default: -5:5, for a file 0 to rows - 1]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
-    y: Option<(f64, f64)>,
-    /// Samples along both axes, or along x and along y
-    #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
-    samples: Option<(usize, usize)>,
-    /// The first row of the file is the one with the largest y
-    #[arg(long, requires = "grid")]
-    flip_y: bool,
-    /// Factor for all heights
-    #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
-    #[arg(default_value_t = 1.0)]
-    z_scale: f64,
-    /// Whether heights are drawn to the scale of x and y
-    ///
-    /// box: heights are scaled so that the box around the surface is 0.4 times as high as the longer
-    /// side of its base, then by --z-scale. The default is box, but data with --parametric.
-    #[arg(long, value_enum)]
-    aspect: Option<Aspect>,
+    #[command(flatten)]
+    sheets: SheetArgs,
 }
 
 #[derive(Args)]
@@ -181,12 +129,6 @@ impl DressingArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub(super) enum Aspect {
-    Box,
-    Data,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum LineName {
     X,
     Y,
@@ -221,33 +163,6 @@ fn levels(text: &str) -> Result<Levels, String> {
     list.split(',').map(values::number).collect::<Result<_, _>>().map(Levels::At)
 }
 
-/// A number or a formula without variables, such as `2*pi`.
-fn constant(text: &str) -> Result<f64, String> {
-    let formula = Formula::parse(text, Variables::Plane).map_err(|error| error.to_string())?;
-    let value = formula.value(f64::NAN, f64::NAN);
-    if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
-}
-
-/// Two numbers, the smaller first, with a colon between them.
-pub(in crate::cli) fn range(text: &str) -> Result<(f64, f64), String> {
-    let (from, to) = text.split_once(':').ok_or("give two numbers, as in -2:2")?;
-    let (from, to) = (constant(from)?, constant(to)?);
-    if from < to { Ok((from, to)) } else { Err("the first number must be the smaller one".into()) }
-}
-
-/// Numbers of samples along x and y.
-pub(in crate::cli) fn samples(text: &str) -> Result<(usize, usize), String> {
-    let number = |text: &str| {
-        let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
-        if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }
-    };
-    match text.split_once('x') {
-        Some((x, y)) => Ok((number(x)?, number(y)?)),
-        None => number(text).map(|n| (n, n)),
-    }
-    .map_err(|error: &str| error.to_owned())
-}
-
 fn at_least_one(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|k| *k > 0).ok_or_else(|| "give a whole number above 0".to_owned())
 }
@@ -256,35 +171,12 @@ impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(in crate::cli) fn job(self) -> Result<Job, Refused> {
         let Self { surface, camera, lines, dressing, page, output } = self;
-        let samples = surface.samples.unwrap_or((DEFAULT_SAMPLES, DEFAULT_SAMPLES));
-        let parse = |texts: &[String], variables| {
-            let parse = |(k, text): (usize, &String)| {
-                let which = if texts.len() > 1 { format!("{}", k + 1) } else { String::new() };
-                Formula::parse(text, variables).map_err(|error| match which.as_str() {
-                    "" => format!("in the formula, {error}"),
-                    which => format!("in formula {which}, {error}"),
-                })
-            };
-            texts.iter().enumerate().map(parse).collect::<Result<Vec<_>, _>>()
-        };
-        let (mut default_line, mut default_aspect) = (LineName::Both, Aspect::Box);
-        let input = if let Some(path) = surface.grid {
-            Input::File(path)
-        } else if let Some(path) = surface.points {
-            default_line = LineName::Mesh;
-            Input::Points(path)
-        } else if let Some(texts) = surface.parametric {
-            default_aspect = Aspect::Data;
-            let formulas = parse(&texts, Variables::Parameters)?;
-            let (u, v) = (surface.u.unwrap_or((0.0, 1.0)), surface.v.unwrap_or((0.0, 1.0)));
-            Input::Parametric { formulas, u, v, samples }
-        } else {
-            let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
-            let formulas = parse(&texts, Variables::Plane)?;
-            let domain = surface.domain.map(|text| {
-                Formula::parse(&text, Variables::Plane).map_err(|e| format!("in --where, {e}"))
-            });
-            Input::Formulas { texts, formulas, domain: domain.transpose()?, samples }
+        let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
+        let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
+        let mut sheets = sheets.ok_or("give a formula")?;
+        let default_line = match sheets.input {
+            Input::Points(_) => LineName::Mesh,
+            _ => LineName::Both,
         };
         let named = if lines.lines.is_empty() { vec![default_line] } else { lines.lines };
         let has = |name| named.contains(&name);
@@ -298,18 +190,18 @@ impl SurfaceArgs {
         };
         let only_grid_lines =
             named.iter().all(|n| matches!(n, LineName::X | LineName::Y | LineName::Both));
-        if matches!(input, Input::Points(_)) && (along.along_x || along.along_y) {
+        if matches!(sheets.input, Input::Points(_)) && (along.along_x || along.along_y) {
             return Err("scattered points have no grid lines: give --lines mesh or levels".into());
         }
         if lines.levels.is_some() && !has(LineName::Levels) {
             return Err("--levels is for level curves: give --lines levels, too".into());
         }
-        let one_sheet = match &input {
+        let one_sheet = match &sheets.input {
             Input::Formulas { formulas, .. } => formulas.len() == 1,
             Input::File(_) | Input::Points(_) => true,
             Input::Parametric { .. } => false,
         };
-        let is_grid = match &input {
+        let is_grid = match &sheets.input {
             Input::Formulas { domain, .. } => one_sheet && domain.is_none(),
             Input::File(_) => true,
             Input::Points(_) | Input::Parametric { .. } => false,
@@ -334,12 +226,11 @@ impl SurfaceArgs {
             }
             _ => {}
         }
-        let aspect = surface.aspect.unwrap_or(default_aspect);
+        if lines.exact {
+            sheets.aspect = Aspect::Data;
+        }
         Ok(Job {
-            input,
-            placement: Placement { x: surface.x, y: surface.y, flip_y: surface.flip_y },
-            z_scale: surface.z_scale,
-            aspect: if lines.exact { Aspect::Data } else { aspect },
+            sheets,
             view: camera.view_source(),
             lines: along,
             levels: has(LineName::Levels)

@@ -7,14 +7,19 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use hiddenline::engines::surface::max_min;
 use hiddenline::formula::Formula;
+use hiddenline::mesh::Mesh;
 use hiddenline::surface::{
-    Grid, Holes, MAX_SAMPLES, TrimmedGrid, close_seams, delaunay, evenly, read_heights, read_points,
+    Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
+    delaunay, evenly, read_heights, read_points,
 };
 
 use hiddenline::view::Camera;
 
 use super::Job;
-use super::args::{Aspect, EngineName};
+use super::args::EngineName;
+use super::sheet_args::Aspect;
+use crate::cli::paper::Notes;
+use crate::cli::paths;
 
 /// Height of the drawn box as a part of the longer side of its base, with `--aspect box`.
 const BOX_HEIGHT: f64 = 0.4;
@@ -22,8 +27,11 @@ const BOX_HEIGHT: f64 = 0.4;
 /// The range of x and y that a formula is drawn over, unless given.
 const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
 
+/// What is wrong with a surface without triangles.
+pub(super) const NO_CELLS: &str = "no four neighboring samples have a height: nothing to draw";
+
 /// Where the surface comes from.
-pub(super) enum Input {
+pub(in crate::cli) enum Input {
     Formulas {
         texts: Vec<String>,
         formulas: Vec<Formula>,
@@ -38,6 +46,14 @@ pub(super) enum Input {
         v: (f64, f64),
         samples: (usize, usize),
     },
+}
+
+/// A surface as it is asked for.
+pub(in crate::cli) struct Sheets {
+    pub(super) input: Input,
+    pub(super) placement: Placement,
+    pub(super) z_scale: f64,
+    pub(super) aspect: Aspect,
 }
 
 /// The surface that is drawn.
@@ -97,6 +113,21 @@ impl Surface {
                 points.iter_mut().for_each(|p| p.z *= factor);
             }
         }
+    }
+
+    /// Its triangles, with these lines of lattices; scattered points have lines along all edges if
+    /// triangles are to have them.
+    pub(super) fn lined(&self, lines: &LatticeLines) -> LinedMesh {
+        let mut mesh = LinedMesh::default();
+        match self {
+            Self::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, lines)),
+            Self::Trimmed(grids) => grids.iter().for_each(|grid| mesh.push_trimmed(grid, lines)),
+            Self::Points { points, triangles } => {
+                mesh.push_triangles(points, triangles, lines.triangles);
+            }
+            Self::Lattice { n_columns, points } => mesh.push_lattice(*n_columns, points, lines),
+        }
+        mesh
     }
 
     /// The grid, if it is all there is and an engine for grids is to draw it.
@@ -174,86 +205,114 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
-/// The surface with `refined` times as many cells along both axes as asked for, if it is given by
-/// formulas, and the factor that its heights were multiplied by.
-pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn Error>> {
-    let finely = |(u, v): (usize, usize)| {
-        let finer = |n: usize| (n - 1).saturating_mul(refined).saturating_add(1);
-        (finer(u), finer(v))
-    };
-    let failed = |path: &Path, error: &dyn Error| format!("{}: {error}", path.display());
-    let mut surface = match &job.input {
-        Input::Formulas { formulas, domain, samples, .. } => {
-            let samples = finely(*samples);
-            let x = job.placement.x.unwrap_or(DEFAULT_RANGE);
-            let y = job.placement.y.unwrap_or(DEFAULT_RANGE);
-            let formulas = formulas.iter();
-            match domain {
-                None => {
-                    let sample = |formula| Grid::sample(formula, x, y, samples);
-                    Surface::Grids(formulas.map(sample).collect::<Result<_, _>>()?)
-                }
-                Some(domain) => {
-                    let sample = |formula| TrimmedGrid::sample(formula, domain, x, y, samples);
-                    let grids = formulas.map(sample).collect::<Result<Vec<_>, _>>()?;
-                    if grids.iter().all(TrimmedGrid::is_whole) {
-                        Surface::Grids(grids.iter().map(|g| g.grid().clone()).collect())
-                    } else {
-                        Surface::Trimmed(grids)
+impl Sheets {
+    /// The surface with `refined` times as many cells along both axes as asked for, if it is given by
+    /// formulas, and the factor that its heights were multiplied by.
+    pub(super) fn read(&self, refined: usize) -> Result<(Surface, f64), Box<dyn Error>> {
+        let finely = |(u, v): (usize, usize)| {
+            let finer = |n: usize| (n - 1).saturating_mul(refined).saturating_add(1);
+            (finer(u), finer(v))
+        };
+        let failed = |path: &Path, error: &dyn Error| format!("{}: {error}", path.display());
+        let mut surface = match &self.input {
+            Input::Formulas { formulas, domain, samples, .. } => {
+                let samples = finely(*samples);
+                let x = self.placement.x.unwrap_or(DEFAULT_RANGE);
+                let y = self.placement.y.unwrap_or(DEFAULT_RANGE);
+                let formulas = formulas.iter();
+                match domain {
+                    None => {
+                        let sample = |formula| Grid::sample(formula, x, y, samples);
+                        Surface::Grids(formulas.map(sample).collect::<Result<_, _>>()?)
+                    }
+                    Some(domain) => {
+                        let sample = |formula| TrimmedGrid::sample(formula, domain, x, y, samples);
+                        let grids = formulas.map(sample).collect::<Result<Vec<_>, _>>()?;
+                        if grids.iter().all(TrimmedGrid::is_whole) {
+                            Surface::Grids(grids.iter().map(|g| g.grid().clone()).collect())
+                        } else {
+                            Surface::Trimmed(grids)
+                        }
                     }
                 }
             }
-        }
-        Input::File(path) => {
-            let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
-            let grid = read_heights(&bytes, job.placement);
-            Surface::Grids(vec![grid.map_err(|error| failed(path, &error))?])
-        }
-        Input::Points(path) => {
-            let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
-            let points = read_points(&String::from_utf8_lossy(&bytes));
-            let points = points.map_err(|error| failed(path, &error))?;
-            let triangles = delaunay(&points).map_err(|error| failed(path, &error))?;
-            Surface::Points { points, triangles }
-        }
-        Input::Parametric { formulas, u, v, samples } => {
-            let samples = finely(*samples);
-            if samples.0.checked_mul(samples.1).is_none_or(|n| n > MAX_SAMPLES) {
-                let (u, v) = samples;
-                return Err(format!("{u} × {v} samples are more than {MAX_SAMPLES}").into());
+            Input::File(path) => {
+                let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
+                let grid = read_heights(&bytes, self.placement);
+                Surface::Grids(vec![grid.map_err(|error| failed(path, &error))?])
             }
-            let us = evenly(u.0, u.1, samples.0);
-            let mut points = Vec::with_capacity(samples.0 * samples.1);
-            for v in evenly(v.0, v.1, samples.1) {
-                let mut rows = [(); 3].map(|()| vec![0.0; us.len()]);
-                for (formula, row) in formulas.iter().zip(&mut rows) {
-                    formula.values(&us, &vec![v; us.len()], row);
+            Input::Points(path) => {
+                let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
+                let points = read_points(&String::from_utf8_lossy(&bytes));
+                let points = points.map_err(|error| failed(path, &error))?;
+                let triangles = delaunay(&points).map_err(|error| failed(path, &error))?;
+                Surface::Points { points, triangles }
+            }
+            Input::Parametric { formulas, u, v, samples } => {
+                let samples = finely(*samples);
+                if samples.0.checked_mul(samples.1).is_none_or(|n| n > MAX_SAMPLES) {
+                    let (u, v) = samples;
+                    return Err(format!("{u} × {v} samples are more than {MAX_SAMPLES}").into());
                 }
-                points
-                    .extend((0..us.len()).map(|i| DVec3::new(rows[0][i], rows[1][i], rows[2][i])));
+                let us = evenly(u.0, u.1, samples.0);
+                let mut points = Vec::with_capacity(samples.0 * samples.1);
+                for v in evenly(v.0, v.1, samples.1) {
+                    let mut rows = [(); 3].map(|()| vec![0.0; us.len()]);
+                    for (formula, row) in formulas.iter().zip(&mut rows) {
+                        formula.values(&us, &vec![v; us.len()], row);
+                    }
+                    points.extend(
+                        (0..us.len()).map(|i| DVec3::new(rows[0][i], rows[1][i], rows[2][i])),
+                    );
+                }
+                close_seams(us.len(), &mut points);
+                Surface::Lattice { n_columns: us.len(), points }
             }
-            close_seams(us.len(), &mut points);
-            Surface::Lattice { n_columns: us.len(), points }
+        };
+        let (low, high) = surface.bounds();
+        if low.x > high.x {
+            return Err("no sample has a height: nothing to draw".into());
         }
-    };
-    let (low, high) = surface.bounds();
-    if low.x > high.x {
-        return Err("no sample has a height: nothing to draw".into());
+        let size = high - low;
+        if !size.is_finite() {
+            return Err(format!(
+                "heights from {:e} to {:e} are too far apart to draw; divide the formula or file",
+                low.z, high.z
+            )
+            .into());
+        }
+        let fitted = BOX_HEIGHT * size.x.max(size.y) / size.z;
+        let fits = self.aspect == Aspect::Box && fitted.is_finite() && fitted > 0.0;
+        let factor = if fits { fitted } else { 1.0 } * self.z_scale;
+        if !(low.z * factor).is_finite() || !(high.z * factor).is_finite() {
+            return Err(format!("heights times {factor:e} are too large to draw").into());
+        }
+        surface.scale_heights(factor);
+        Ok((surface, factor))
     }
-    let size = high - low;
-    if !size.is_finite() {
-        return Err(format!(
-            "heights from {:e} to {:e} are too far apart to draw; divide the formula or file",
-            low.z, high.z
-        )
-        .into());
+
+    /// What a picture of it is called.
+    pub(in crate::cli) fn title(&self) -> String {
+        match &self.input {
+            Input::Formulas { texts, .. } => {
+                let texts: Vec<&str> = texts.iter().map(|text| text.trim()).collect();
+                format!("z = {}", texts.join(", "))
+            }
+            Input::Parametric { .. } => "parametric surface".to_owned(),
+            Input::File(path) | Input::Points(path) => paths::title(path),
+        }
     }
-    let fitted = BOX_HEIGHT * size.x.max(size.y) / size.z;
-    let fits = job.aspect == Aspect::Box && fitted.is_finite() && fitted > 0.0;
-    let factor = if fits { fitted } else { 1.0 } * job.z_scale;
-    if !(low.z * factor).is_finite() || !(high.z * factor).is_finite() {
-        return Err(format!("heights times {factor:e} are too large to draw").into());
+
+    /// The surface as a mesh, sampled as asked for.
+    pub(in crate::cli) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
+        let (surface, _) = self.read(1)?;
+        let no_lines =
+            LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
+        let mesh = surface.lined(&no_lines).into_mesh()?;
+        if mesh.n_faces() == 0 {
+            return Err(NO_CELLS.into());
+        }
+        let summary = format!("{}: {}", self.title(), surface.described());
+        Ok((mesh, Notes { summary, ..Notes::default() }))
     }
-    surface.scale_heights(factor);
-    Ok((surface, factor))
 }

@@ -15,7 +15,7 @@ use hiddenline::view::{Camera, Projection};
 
 use super::Job;
 use super::args::EngineName;
-use super::sheets::{Input, Surface, read};
+use super::sheets::{Input, Surface};
 
 /// Most cells along an axis that one cell of the samples asked for is divided into. Kinks and cliffs
 /// are never smooth, however fine the samples.
@@ -48,7 +48,7 @@ pub(super) struct Sampled {
 pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
     let mut refined = 1;
     loop {
-        let (surface, factor) = read(job, refined)?;
+        let (surface, factor) = job.sheets.read(refined)?;
         let camera = job.view.camera(surface.bounds())?;
         let deviation_mm =
             if is_refinable(job) { deviation_mm(job, &surface, &camera) } else { 0.0 };
@@ -62,7 +62,7 @@ pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
 
 /// Whether the job's surface can be sampled more finely to make its lines smooth.
 fn is_refinable(job: &Job) -> bool {
-    let is_formula = matches!(job.input, Input::Formulas { .. } | Input::Parametric { .. });
+    let is_formula = matches!(job.sheets.input, Input::Formulas { .. } | Input::Parametric { .. });
     let is_floating = job.engine == EngineName::FloatingHorizon;
     let has_curves = job.lines.along_x || job.lines.along_y;
     is_formula && job.smoothness_mm > 0.0 && !job.all_edges && !is_floating && has_curves
@@ -76,7 +76,7 @@ fn finer(
     refined: usize,
     deviation_mm: f64,
 ) -> usize {
-    let samples = match &job.input {
+    let samples = match &job.sheets.input {
         Input::Formulas { samples, .. } | Input::Parametric { samples, .. } => *samples,
         _ => return refined,
     };

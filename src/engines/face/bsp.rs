@@ -49,9 +49,9 @@ pub use self::walk::{Order, Walk};
 
 use std::borrow::Cow;
 
-use super::Counts;
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
+use super::{Counts, Work};
 use crate::predicates::{PlaneName, Planes, Sign};
 use crate::scene::Scene;
 use crate::view::Camera;
@@ -81,6 +81,11 @@ impl Forest {
     /// All fragments, in no order.
     pub(super) fn fragments(&self) -> &[Fragment] {
         &self.fragments
+    }
+
+    /// Number of nodes of all trees.
+    pub(super) fn n_nodes(&self) -> usize {
+        self.nodes.len()
     }
 }
 
@@ -112,7 +117,7 @@ impl Tree {
 
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
-        self.forest.nodes.len()
+        self.forest.n_nodes()
     }
 
     /// All fragments, in no order.
@@ -123,6 +128,11 @@ impl Tree {
     /// What building took.
     pub fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// The same with the size of the tree.
+    pub fn work(&self) -> Work {
+        Work::Bsp { counts: self.counts, nodes: self.n_nodes() as u64 }
     }
 
     /// The fragments in the order in which the camera of `planes` sees them, with the side of their

@@ -55,14 +55,17 @@ mod boxes;
 mod list;
 mod relation;
 
+pub use self::relation::Settled;
+
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
-use super::{Counts, piercing};
+use super::piercing;
 use crate::predicates::{PlaneName, Planes, Sign};
 use crate::scene::Scene;
 use crate::view::Camera;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use serde::Serialize;
 use thiserror::Error;
 
 /// Splits for each face, at most, above a few thousand; usual models need far below one.
@@ -97,6 +100,21 @@ pub enum Error {
     /// Told while sorting.
     #[error("the faces had to be split {0} times and are still not in order; use bsp or warnock")]
     TooManySplits(u64),
+}
+
+/// What sorting took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counts {
+    /// Pieces that are painted.
+    pub fragments: u64,
+    /// Times that a fragment was cut in two, not counting cuts at the near plane.
+    pub splits: u64,
+    /// Times that a pair came up.
+    pub tests: u64,
+    /// Times that a fragment was moved before another.
+    pub moves: u64,
+    /// Which test settled it.
+    pub settled: Settled,
 }
 
 /// A fragment with what is asked of it most often. Boxes and depths are a little too large.

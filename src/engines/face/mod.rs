@@ -35,10 +35,13 @@ pub mod warnock;
 
 pub mod weiler_atherton;
 
+pub mod work;
+
 use thiserror::Error;
 
 pub use self::bsp::TooManyFragments;
 pub use self::painting::{Painting, Piece};
+pub use self::work::{Counts, Work};
 use crate::scene::Scene;
 use crate::view::Camera;
 
@@ -58,25 +61,6 @@ pub enum Engine {
     Warnock,
     /// Faces clipped by nearer faces: exact regions beside each other.
     WeilerAtherton,
-}
-
-/// What an engine did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Fragments of faces that there are at the end.
-    pub fragments: u64,
-    /// Times that a fragment was cut in two, not counting cuts at the near plane.
-    pub splits: u64,
-    /// Times that a fragment was compared with a plane or with another fragment.
-    pub tests: u64,
-}
-
-impl Counts {
-    fn add(&mut self, other: Self) {
-        self.fragments += other.fragments;
-        self.splits += other.splits;
-        self.tests += other.tests;
-    }
 }
 
 impl Engine {
@@ -185,23 +169,36 @@ impl<'a> Prepared<'a> {
         self.scene
     }
 
-    /// The visible regions as a camera sees them.
+    /// The visible regions as a camera sees them, and what it took to find them; building a tree
+    /// counts in each view of it.
     ///
     /// # Errors
     /// See [`FaceError`]; all are told before any work is done but counting.
-    pub fn solve(&self, camera: &Camera, settings: &Settings) -> Result<Painting, FaceError> {
+    pub fn solve(
+        &self,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<(Painting, Work), FaceError> {
         let scene = self.scene;
         match (self.engine, &self.trees) {
-            (_, Trees::Planes(tree)) => Ok(tree.paint(scene, camera)),
-            (_, Trees::Octants(tree)) => Ok(tree.paint_seen(scene, camera)),
-            (Engine::DepthSort, _) => Ok(depth_sort::solve(scene, camera)?.0),
+            (_, Trees::Planes(tree)) => Ok((tree.paint(scene, camera), tree.work())),
+            (_, Trees::Octants(tree)) => {
+                let (painting, hidden) = tree.paint_seen(scene, camera);
+                Ok((painting, tree.work(hidden)))
+            }
+            (Engine::DepthSort, _) => {
+                let (painting, counts) = depth_sort::solve(scene, camera)?;
+                Ok((painting, Work::DepthSort(counts)))
+            }
             (Engine::Warnock, _) => {
                 let Settings { leaf, subdivision, .. } = *settings;
                 let options = warnock::Options { leaf, subdivision, window: None };
-                warnock::solve(scene, camera, &options)
+                let (painting, counts) = warnock::solve(scene, camera, &options)?;
+                Ok((painting, Work::Warnock(counts)))
             }
             (Engine::Auto | Engine::WeilerAtherton | Engine::Bsp | Engine::Octree, _) => {
-                weiler_atherton::solve(scene, camera)
+                let (painting, counts) = weiler_atherton::solve(scene, camera)?;
+                Ok((painting, Work::WeilerAtherton(counts)))
             }
         }
     }

@@ -64,8 +64,52 @@ impl Occupancy {
         self.rim
     }
 
-    fn square(&self) -> Square {
+    /// The square of the image: its lower left corner and its side.
+    pub fn square(&self) -> (DVec2, f64) {
+        (self.low, self.size)
+    }
+
+    fn whole(&self) -> Square {
         Square { low: self.low, size: self.size, level: 0 }
+    }
+
+    /// Marks one of the smallest squares, by its column and row.
+    pub fn cover_square(&mut self, column: usize, row: usize) {
+        self.root = self.with_square(self.root, LEVELS, column, row);
+    }
+
+    fn with_square(&mut self, node: u32, levels_below: u32, column: usize, row: usize) -> u32 {
+        if node == COVERED || levels_below == 0 {
+            return COVERED;
+        }
+        let mut quarters = match node {
+            OPEN => [OPEN; 4],
+            _ => self.quarters[node as usize],
+        };
+        let level = levels_below - 1;
+        let number = (column >> level & 1) | (row >> level & 1) << 1;
+        quarters[number] = self.with_square(quarters[number], level, column, row);
+        self.with_quarters(node, quarters)
+    }
+
+    /// A node with these quarters in place of `node`.
+    fn with_quarters(&mut self, node: u32, quarters: [u32; 4]) -> u32 {
+        if quarters == [COVERED; 4] {
+            return COVERED;
+        }
+        if quarters == [OPEN; 4] {
+            return node;
+        }
+        match node {
+            OPEN => {
+                self.quarters.push(quarters);
+                self.quarters.len() as u32 - 1
+            }
+            _ => {
+                self.quarters[node as usize] = quarters;
+                node
+            }
+        }
     }
 
     /// Marks what a convex polygon covers; its corners run counter-clockwise.
@@ -74,7 +118,7 @@ impl Occupancy {
         let high = polygon.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
         let least = self.size / f64::from(1u32 << LEVELS);
         if polygon.len() >= 3 && (high - low).min_element() > least {
-            self.root = self.covered(self.root, self.square(), polygon);
+            self.root = self.covered(self.root, self.whole(), polygon);
         }
     }
 
@@ -112,22 +156,7 @@ impl Occupancy {
         for (number, quarter) in quarters.iter_mut().enumerate() {
             *quarter = self.covered(*quarter, square.quarter(number), polygon);
         }
-        if quarters == [COVERED; 4] {
-            return COVERED;
-        }
-        if quarters == [OPEN; 4] {
-            return node;
-        }
-        match node {
-            OPEN => {
-                self.quarters.push(quarters);
-                self.quarters.len() as u32 - 1
-            }
-            _ => {
-                self.quarters[node as usize] = quarters;
-                node
-            }
-        }
+        self.with_quarters(node, quarters)
     }
 
     /// Whether a rectangle is surely covered.
@@ -137,7 +166,7 @@ impl Occupancy {
         if !(low.cmpge(self.low).all() && high.cmple(end).all()) {
             return false;
         }
-        let mut waiting = vec![(self.root, self.square())];
+        let mut waiting = vec![(self.root, self.whole())];
         while let Some((node, square)) = waiting.pop() {
             let is_apart =
                 low.cmpgt(square.low + square.size).any() || high.cmplt(square.low).any();

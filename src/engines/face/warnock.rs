@@ -35,8 +35,11 @@
 //! a leaf of where two faces meet. Cost: leaves along all borders between faces × log; candidates
 //! become fewer from window to window. Cannot: more than [`MOST_LEAVES`] leaves, refused at once.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::DVec2;
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::images::{Images, Place};
 use super::painting::{NO_LINE, Painting};
@@ -74,6 +77,47 @@ pub struct Options {
     pub subdivision: Subdivision,
 }
 
+/// How windows came to their end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counts {
+    /// Windows that were looked at: the sum of all below.
+    pub windows: u64,
+    /// Windows that were divided.
+    pub divided: u64,
+    /// Windows that no polygon reaches.
+    pub empty: u64,
+    /// Windows that one polygon covers, in front of all others if there are any.
+    pub covered: u64,
+    /// Windows that one polygon reaches into, or one and what it hides.
+    pub single: u64,
+    /// Leaves where the nearest polygon at the center was taken.
+    pub leaves: u64,
+}
+
+/// The same while several threads count.
+#[derive(Debug, Default)]
+struct Tally {
+    divided: AtomicU64,
+    empty: AtomicU64,
+    covered: AtomicU64,
+    single: AtomicU64,
+    leaves: AtomicU64,
+}
+
+impl Tally {
+    fn counts(self) -> Counts {
+        let [divided, empty, covered, single, leaves] =
+            [self.divided, self.empty, self.covered, self.single, self.leaves]
+                .map(AtomicU64::into_inner);
+        let windows = divided + empty + covered + single + leaves;
+        Counts { windows, divided, empty, covered, single, leaves }
+    }
+}
+
+fn count(tally: &AtomicU64) {
+    tally.fetch_add(1, Ordering::Relaxed);
+}
+
 /// Finds what is seen of each face.
 ///
 /// The pieces lie beside each other, in the order of faces. In parallel, and the same with any number
@@ -81,10 +125,14 @@ pub struct Options {
 ///
 /// # Errors
 /// [`FaceError::TooManyLeaves`].
-pub fn solve(scene: &Scene, camera: &Camera, options: &Options) -> Result<Painting, FaceError> {
+pub fn solve(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+) -> Result<(Painting, Counts), FaceError> {
     let images = Images::new(scene, camera);
     if images.flats.is_empty() {
-        return Ok(Painting::new(true));
+        return Ok((Painting::new(true), Counts::default()));
     }
     let (low, high) = options.window.unwrap_or(images.bounds);
     let diagonal = (high - low).length();
@@ -94,7 +142,8 @@ pub fn solve(scene: &Scene, camera: &Camera, options: &Options) -> Result<Painti
     if n_leaves.is_nan() || n_leaves > MOST_LEAVES {
         return Err(FaceError::TooManyLeaves { n: n_leaves, most: MOST_LEAVES });
     }
-    let warnock = Warnock { images: &images, low, leaf, subdivision: options.subdivision };
+    let subdivision = options.subdivision;
+    let warnock = Warnock { images: &images, low, leaf, subdivision, tally: Tally::default() };
     let all: Vec<u32> = (0..images.flats.len() as u32).collect();
     let root = Window { from: [0, 0], to: [n.x as u32, n.y as u32] };
     // What is drawn of each polygon, window by window in a fixed order.
@@ -103,7 +152,7 @@ pub fn solve(scene: &Scene, camera: &Camera, options: &Options) -> Result<Painti
         drawn[polygon as usize].push(region);
     }
     let faces = images.flats.iter().map(|flat| flat.face).zip(drawn);
-    Ok(merge::by_face(faces, &images.grid))
+    Ok((merge::by_face(faces, &images.grid), warnock.tally.counts()))
 }
 
 /// So many times are the parts of a window divided by several threads.
@@ -130,6 +179,7 @@ struct Warnock<'a> {
     low: DVec2,
     leaf: f64,
     subdivision: Subdivision,
+    tally: Tally,
 }
 
 type Drawn = Vec<(u32, Region)>;
@@ -147,9 +197,16 @@ impl Warnock<'_> {
         self.drop_hidden(&mut reaching, bounds);
         match reaching[..] {
             // K2
-            [] => return Vec::new(),
-            [(polygon, Class::Surrounding)] => return vec![(polygon, self.rectangle(bounds))],
+            [] => {
+                count(&self.tally.empty);
+                return Vec::new();
+            }
+            [(polygon, Class::Surrounding)] => {
+                count(&self.tally.covered);
+                return vec![(polygon, self.rectangle(bounds))];
+            }
             [(polygon, _)] => {
+                count(&self.tally.single);
                 let region = &self.images.flats[polygon as usize].region;
                 return vec![(polygon, region.within(&self.rectangle(bounds)))];
             }
@@ -157,8 +214,10 @@ impl Warnock<'_> {
         }
         let [columns, rows] = [0, 1].map(|axis| window.to[axis] - window.from[axis]);
         if columns == 1 && rows == 1 {
+            count(&self.tally.leaves);
             return self.leaf(&reaching, bounds);
         }
+        count(&self.tally.divided);
         let polygons: Vec<u32> = reaching.iter().map(|&(polygon, _)| polygon).collect();
         let parts = self.divided(window, &polygons);
         if parallel > 0 {

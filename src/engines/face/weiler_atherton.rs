@@ -41,8 +41,10 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::boxes::BoxIndex;
 use super::images::{Images, Place};
@@ -58,6 +60,24 @@ pub const MOST_FACES: usize = 10_000;
 /// Polygons that one piece of parallel work compares with the first one, at least.
 const MIN_LEN: usize = 8;
 
+/// What clipping took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Counts {
+    /// Polygons that were clipped: faces, or triangles of bent ones, in the image.
+    pub polygons: u64,
+    /// Regions that were found.
+    pub regions: u64,
+    /// Pairs of polygons that were compared.
+    pub comparisons: u64,
+    /// Of these, pairs that overlap in the image while the plane of each cuts the other, so that they
+    /// may pierce each other.
+    pub crossings: u64,
+    /// Polygons that were taken before a nearer one, since they are in front of it.
+    pub moves: u64,
+    /// Polygons that others clipped apart, in lists of their own.
+    pub nested: u64,
+}
+
 /// Finds the visible region of each face.
 ///
 /// The pieces lie beside each other; a face has one for each place where it is seen, in the order of
@@ -65,7 +85,7 @@ const MIN_LEN: usize = 8;
 ///
 /// # Errors
 /// [`FaceError::TooManyFaces`].
-pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
+pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceError> {
     let images = Images::new(scene, camera);
     let n = images.flats.len();
     if n > MOST_FACES {
@@ -86,7 +106,15 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
         rank[flat as usize] = k;
     }
     let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
-    let mut work = Work { images: &images, clipping: vec![false; n], drawn: vec![Vec::new(); n] };
+    let mut work = Work {
+        images: &images,
+        clipping: vec![false; n],
+        drawn: vec![Vec::new(); n],
+        comparisons: AtomicU64::new(0),
+        crossings: AtomicU64::new(0),
+        nested: 0,
+    };
+    let mut moves = 0;
     // What is left of each polygon: L, and after each step O.
     let mut left: Vec<Rest> =
         images.flats.iter().map(|flat| Rest::new(flat.region.clone())).collect();
@@ -111,6 +139,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
             near.retain(|&other| other != first && !is_done[other as usize]);
             near.sort_by_key(|&other| rank[other as usize]);
             let goes_first = |&other: &u32| {
+                work.comparisons.fetch_add(1, Ordering::Relaxed);
                 !is_begun[other as usize]
                     && images.place(first as usize, other as usize) == Place::InFront
                     && !left[other as usize].within(&region).is_empty()
@@ -118,6 +147,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
             let before: Vec<u32> =
                 near.par_iter().with_min_len(MIN_LEN).copied().filter(goes_first).collect();
             if !before.is_empty() {
+                moves += before.len() as u64;
                 left[first as usize] = Rest::new(region);
                 waiting.extend(before.iter().rev());
                 continue;
@@ -138,7 +168,16 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<Painting, FaceError> {
         }
     }
     let faces = images.flats.iter().map(|flat| flat.face).zip(work.drawn);
-    Ok(merge::by_face(faces, &images.grid))
+    let painting = merge::by_face(faces, &images.grid);
+    let counts = Counts {
+        polygons: n as u64,
+        regions: painting.len() as u64,
+        comparisons: work.comparisons.into_inner(),
+        crossings: work.crossings.into_inner(),
+        moves,
+        nested: work.nested,
+    };
+    Ok((painting, counts))
 }
 
 struct Work<'a> {
@@ -147,18 +186,26 @@ struct Work<'a> {
     clipping: Vec<bool>,
     /// What is seen of each polygon.
     drawn: Vec<Vec<Region>>,
+    comparisons: AtomicU64,
+    crossings: AtomicU64,
+    nested: u64,
 }
 
 impl Work<'_> {
     /// What of the rest of polygon `other` lies within `region` of polygon `first` and in front of it.
     fn in_front(&self, first: u32, region: &Region, other: u32, left: &Rest) -> Region {
         let (this, that) = (first as usize, other as usize);
+        self.comparisons.fetch_add(1, Ordering::Relaxed);
         match self.images.place(this, that) {
             Place::Behind => Region::default(),
             Place::InFront => left.within(region),
             Place::Crossing => {
                 let inside = left.within(region);
-                if inside.is_empty() { inside } else { self.nearer_part(inside, this, that) }
+                if inside.is_empty() {
+                    return inside;
+                }
+                self.crossings.fetch_add(1, Ordering::Relaxed);
+                self.nearer_part(inside, this, that)
             }
         }
     }
@@ -205,6 +252,8 @@ impl Work<'_> {
                 self.drawn[first as usize].push(region);
                 continue;
             }
+            self.clipping[first as usize] = true;
+            self.nested += 1;
             let mut inside = Vec::new();
             let region = Arc::new(region);
             for (other, left) in list {
@@ -219,9 +268,9 @@ impl Work<'_> {
             }
             if inside.is_empty() {
                 self.drawn[first as usize].push(Arc::unwrap_or_clone(region));
+                self.clipping[first as usize] = false;
                 continue;
             }
-            self.clipping[first as usize] = true;
             waiting.push((first, list_of(first, region, inside)));
         }
     }

@@ -109,7 +109,7 @@ fn painted_sides_lie_on_the_images_of_their_lines() {
         for painting in [
             bsp::solve(&scene, &camera).unwrap().0,
             tree.paint(&scene, &camera),
-            tree.paint_seen(&scene, &camera),
+            tree.paint_seen(&scene, &camera).0,
             depth_sort::solve(&scene, &camera).unwrap().0,
         ] {
             for piece in painting.pieces() {

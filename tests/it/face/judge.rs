@@ -14,7 +14,7 @@ const BORDER: f64 = 1e-7;
 type P = [Int; 3];
 
 /// All that exact rays meet.
-pub(super) struct World<'a> {
+pub(crate) struct World<'a> {
     camera: &'a Camera,
     triangles: Vec<[P; 3]>,
     faces: &'a [u32],
@@ -31,7 +31,7 @@ struct Ray {
 }
 
 impl<'a> World<'a> {
-    pub(super) fn new(scene: &'a Scene, camera: &'a Camera) -> Self {
+    pub(crate) fn new(scene: &'a Scene, camera: &'a Camera) -> Self {
         let positions = scene.mesh().positions();
         // No origin of a ray is finer: see `ray`.
         let eye = camera.eye();
@@ -135,6 +135,11 @@ impl<'a> World<'a> {
         } else {
             left >= (right << (-shift) as usize)
         }
+    }
+
+    /// The face that is seen at a point of the image.
+    pub(crate) fn seen(&self, at: DVec2) -> Option<u32> {
+        self.met(&self.ray(at))
     }
 
     /// Compares a painting with rays on a grid of `n` by `n` points of its image; the number of points

@@ -2,7 +2,7 @@
 
 mod corners;
 mod fragments;
-mod judge;
+pub(crate) mod judge;
 mod models;
 mod order;
 
@@ -22,4 +22,4 @@ const ENGINES: [(&str, Solve); 4] = [
 
 /// The one that finds regions instead of an order.
 const EXACT: (&str, Solve) =
-    ("weiler-atherton", |scene, camera| weiler_atherton::solve(scene, camera).unwrap());
+    ("weiler-atherton", |scene, camera| weiler_atherton::solve(scene, camera).unwrap().0);

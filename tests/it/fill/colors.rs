@@ -64,6 +64,57 @@ fn the_farthest_face_becomes_paper_with_a_full_depth_cue() {
     assert!(filled.layers[0].fills.iter().any(|area| area.color != [255; 3]));
 }
 
+/// Two squares over each other, seen from above: 10 by 10 at height 0, and 2 by 2 at height 5 and
+/// more, tilted by `tilt`, wound the other way round if `is_turned`.
+fn squares(tilt: f64, is_turned: bool) -> TestScene {
+    let mut model = Model::default();
+    model.face(&[[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0], [0.0, 10.0, 0.0]]);
+    let high = 5.0 + 2.0 * tilt;
+    let mut corners = [[4.0, 4.0, 5.0], [6.0, 4.0, high], [6.0, 6.0, high], [4.0, 6.0, 5.0]];
+    if is_turned {
+        corners.reverse();
+    }
+    model.face(&corners);
+    model.seen_by("squares", orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]))
+}
+
+/// Color and area of each area.
+fn colored(scene: &TestScene, options: FillOptions) -> Vec<([u8; 3], f64)> {
+    let (scene, camera) = built(scene);
+    let light = Some(DVec3::Z);
+    let filled = fill(&scene, &camera, &FillOptions { light, ..options }).unwrap();
+    let layers = filled.layers.iter();
+    layers.map(|layer| (layer.color, area(&layer.fills))).collect()
+}
+
+#[test]
+fn an_ink_has_a_hole_where_another_is_seen() {
+    let palette = Some(Palette::Grays(2));
+    let found = colored(&squares(1.0, false), FillOptions { palette, ..FillOptions::default() });
+    let areas: Vec<f64> = found.iter().map(|(_, area)| (area * 1e9).round() / 1e9).collect();
+    assert_eq!(areas, [4.0, 96.0]);
+}
+
+#[test]
+fn what_is_near_keeps_its_color_and_what_is_far_pales() {
+    let (scene, camera) = built(&squares(0.0, false));
+    let (light, paint) = (Some(DVec3::Z), Some([200, 100, 40]));
+    for (depth_cue, far) in [(0.0, [200, 100, 40]), (1.0, [255; 3])] {
+        let options = FillOptions { light, paint, depth_cue, ..FillOptions::default() };
+        let filled = fill(&scene, &camera, &options).unwrap();
+        let colors: Vec<[u8; 3]> = filled.layers[0].fills.iter().map(|area| area.color).collect();
+        assert_eq!(colors, [far, [200, 100, 40]]);
+    }
+}
+
+#[test]
+fn both_sides_of_a_face_are_lit_alike() {
+    let palette = Some(Palette::Grays(2));
+    let options = FillOptions { palette, ..FillOptions::default() };
+    let [front, back] = [false, true].map(|side| colored(&squares(1.0, side), options.clone()));
+    assert_eq!(front, back);
+}
+
 #[test]
 fn inks_lie_beside_each_other_whatever_the_engine() {
     let Some(mesh) = model("spot_control_quads.obj") else { return };
@@ -90,6 +141,43 @@ fn inks_lie_beside_each_other_whatever_the_engine() {
         let found = sum(&fill(&scene, &camera, &disjoint).unwrap());
         assert!((found / expected - 1.0).abs() < 1e-9, "{engine:?}: {found}, not {expected}");
     }
+}
+
+/// Layers of the cube from above, its top in `paint` and two sides in a quarter of that.
+fn inked(paint: [u8; 3], palette: Palette) -> Vec<(String, [u8; 3], usize)> {
+    let (scene, camera) = built(&cube());
+    let (light, paint, palette) = (Some(DVec3::Z), Some(paint), Some(palette));
+    let options = FillOptions { light, paint, palette, ..FillOptions::default() };
+    let layers = fill(&scene, &camera, &options).unwrap().layers;
+    layers.into_iter().map(|layer| (layer.name, layer.color, layer.fills.len())).collect()
+}
+
+#[test]
+fn each_face_has_the_nearest_ink_and_of_two_the_first() {
+    let layer = |name: &str, color, n| (name.to_owned(), color, n);
+    // 10 from both; what is left of the sides is nearest to black.
+    let inks = vec![[90, 100, 100], [110, 100, 100], [0, 0, 0]];
+    let found = inked([100; 3], Palette::Inks(inks));
+    // The sides meet, and are one area.
+    assert_eq!(found, [layer("ink1", [90, 100, 100], 1), layer("ink3", [0, 0, 0], 1)]);
+    // Once 30 is farther than three times 12.
+    let inks = vec![[130, 100, 100], [112, 112, 112], [0, 0, 0]];
+    let found = inked([100; 3], Palette::Inks(inks));
+    assert_eq!(found, [layer("ink2", [112; 3], 1), layer("ink3", [0; 3], 1)]);
+}
+
+#[test]
+fn grays_go_from_the_darkest_tone_to_the_lightest() {
+    // The mean of the top's is 200, that of the sides' 50.
+    let found = |n| -> Vec<(String, [u8; 3])> {
+        let layers = inked([220, 190, 190], Palette::Grays(n)).into_iter();
+        layers.map(|(name, color, _)| (name, color)).collect()
+    };
+    let layer = |name: &str, gray| (name.to_owned(), [gray; 3]);
+    assert_eq!(found(1), [layer("ink1", 125)]);
+    assert_eq!(found(2), [layer("ink1", 50), layer("ink2", 200)]);
+    assert_eq!(found(3), [layer("ink1", 50), layer("ink3", 200)]);
+    assert_eq!(found(4), [layer("ink1", 50), layer("ink4", 200)]);
 }
 
 #[test]

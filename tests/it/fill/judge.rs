@@ -92,7 +92,7 @@ fn weiler_and_athertons_regions_show_what_rays_in_space_meet() {
     let mut total = 0;
     for seed in 0..n {
         let (scene, camera) = built(&random(seed));
-        let painting = weiler_atherton::solve(&scene, &camera).unwrap();
+        let painting = weiler_atherton::solve(&scene, &camera).unwrap().0;
         total += judged(&format!("seed {seed}"), (&scene, &camera), &painting, 13, |_| false);
     }
     eprintln!("{total} points judged");

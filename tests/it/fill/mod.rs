@@ -2,6 +2,7 @@
 
 mod borders;
 mod colors;
+mod counts;
 mod judge;
 mod program;
 mod regions;

@@ -5,12 +5,12 @@ use std::process::{Command, Output};
 
 const SPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");
 
-fn fill(arguments: &[&str]) -> Output {
+pub(super) fn fill(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
     command.arg("fill").args(arguments).output().unwrap()
 }
 
-fn text(bytes: &[u8]) -> String {
+pub(super) fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
@@ -202,4 +202,32 @@ fn the_order_of_painting_can_be_seen() {
     let first = svg.find("fill=\"#0000d0\"").unwrap();
     let last = svg.rfind("fill=\"#d00000\"").unwrap();
     assert!(first < last);
+}
+
+#[test]
+fn surfaces_are_filled_as_models_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let heights = folder.path().join("heights");
+    std::fs::write(&heights, "4 2 0 -2 -4\n2 1 0 -1 -2\n0 0 0 0 0\n-2 -1 0 1 2\n-4 -2 0 2 4\n")
+        .unwrap();
+    let ranges = ["--x=-2:2", "--y=-2:2", "--stats"];
+    let areas = |given: &[&str]| -> Vec<String> {
+        let output = fill(&[given, &ranges].concat());
+        let stderr = text(&output.stderr);
+        assert!(output.status.success(), "{given:?}: {stderr}");
+        let stats: serde_json::Value =
+            serde_json::from_str(stderr.lines().last().unwrap()).unwrap();
+        assert_eq!(stats["triangles"], 32);
+        let svg = text(&output.stdout);
+        svg.lines().filter(|line| line.contains("<path")).map(str::to_owned).collect()
+    };
+    let by_formula = areas(&["--expr", "x*y", "--samples", "5"]);
+    assert!(by_formula.len() > 20, "{}", by_formula.len());
+    assert_eq!(areas(&["--grid", heights.to_str().unwrap()]), by_formula);
+    let two =
+        fill(&["--expr", "1", "--expr=-1", "--samples", "3", "--no-edges", "--engine", "bsp"]);
+    let areas = text(&two.stdout).matches("fill-rule").count();
+    assert_eq!(areas, 16, "{}", text(&two.stderr));
+    assert_eq!(fill(&[SPOT, "--expr", "x"]).status.code(), Some(2));
+    assert_eq!(fill(&[]).status.code(), Some(2));
 }

@@ -18,7 +18,7 @@ pub(super) fn warnocks_pair() -> TestScene {
 #[test]
 fn warnocks_pair_is_cut_where_the_faces_cross() {
     let (scene, camera) = built(&warnocks_pair());
-    let painting = solve(&scene, &camera).unwrap();
+    let painting = solve(&scene, &camera).unwrap().0;
     let step = Images::new(&scene, &camera).grid.step();
     // The picture is mirrored: x to the left, seen from below.
     for junction in [235.0 / 14.0, 267.0 / 14.0] {
@@ -42,7 +42,7 @@ fn areas_of_regions_sum_to_that_of_all_images() {
         let images = Images::new(&scene, &camera);
         let step = images.grid.step();
         let all = Region::union(images.flats.iter().map(|flat| &flat.region)).area() * step * step;
-        let painting = solve(&scene, &camera).unwrap();
+        let painting = solve(&scene, &camera).unwrap().0;
         let sum: f64 = painting.pieces().map(|piece| piece.area()).sum();
         let size = (images.bounds.1 - images.bounds.0).length();
         let error = (sum - all).abs() / (size * step).max(f64::MIN_POSITIVE);

@@ -85,12 +85,87 @@ fn a_formula_has_a_picture() {
     assert_eq!((&stats["engine"], &stats["triangles"]), (&"z-buffer".into(), &79202.into()));
 }
 
+/// The picture of a surface, and its counts.
+fn of_surface(more: &[&str]) -> (Vec<u8>, serde_json::Value) {
+    let output = preview(&[&["--size", "60x50", "--stats", "-o", "-"], more].concat());
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{more:?}: {text}");
+    (picture(&output.stdout).3, serde_json::from_str(text.lines().last().unwrap()).unwrap())
+}
+
+#[test]
+fn a_surface_has_one_picture_however_it_is_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |y: i32| (-2..=2).map(|x| (x * y).to_string()).collect::<Vec<_>>().join(" ");
+    let rows = (-2..=2).map(row).collect::<Vec<_>>().join("\n");
+    let at = |y: i32| (-2..=2).map(move |x| format!("{x} {y} {}\n", x * y));
+    let points: String = (-2..=2).flat_map(at).collect();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let (grid, points) = (file("heights", &rows), file("points", &points));
+    let ranges = ["--x=-2:2", "--y=-2:2"];
+    let formula = [&["--expr", "x*y", "--samples", "5"][..], &ranges].concat();
+    let (expected, stats) = of_surface(&formula);
+    assert_eq!(stats["triangles"], 32);
+    assert!(expected.chunks(3).filter(|color| *color != [255; 3]).count() > 300);
+    assert!(of_surface(&[&["--grid", &grid][..], &ranges].concat()).0 == expected);
+    let formulas = ["--parametric", "u", "v", "u*v", "--u=-2:2", "--v=-2:2"];
+    let parametric = [&formulas[..], &["--samples", "5", "--aspect", "box"]].concat();
+    assert!(of_surface(&parametric).0 == expected);
+    // The diagonals of scattered points are free.
+    assert_eq!(of_surface(&["--points", &points]).1["triangles"], 32);
+}
+
+#[test]
+fn several_formulas_are_sheets_of_one_picture() {
+    let one = of_surface(&["--expr", "2", "--samples", "3"]);
+    let both = of_surface(&["--expr", "2", "--expr=-2", "--samples", "3"]);
+    assert_eq!([&one.1["triangles"], &both.1["triangles"]], [8, 16]);
+    assert!(one.0 != both.0);
+    let disc = of_surface(&["--expr", "2", "--where", "r<=3", "--samples", "9"]);
+    assert!(disc.1["triangles"].as_u64() < Some(8 * 8 * 2 * 2) && disc.0 != one.0);
+}
+
+#[test]
+fn edges_are_counted_as_draw_counts_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let pair = folder.path().join("pair.obj");
+    let text = "v 0 0 0\nv 4 0 4\nv 4 4 4\nv 0 4 0\nv 0 1 4\nv 4 1 0\nv 4 3 0\nv 0 3 4\n\
+                f 1 2 3 4\nf 5 6 7 8\n";
+    std::fs::write(&pair, text).unwrap();
+    let stats = |command: &str, more: &[&str]| -> serde_json::Value {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
+        let arguments = [command, pair.to_str().unwrap(), "--stats"];
+        let output = program.args(arguments).args(more).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{text}");
+        serde_json::from_str(text.lines().last().unwrap()).unwrap()
+    };
+    let drawn = stats("draw", &[]);
+    let shown = stats("preview", &["--edges", "-o", "-"]);
+    assert_eq!(shown["intersections"], 1);
+    assert_eq!(shown["counts"], drawn["counts"]);
+    for key in ["vertices", "faces", "triangles", "edges", "intersections", "drawn_edges"] {
+        assert_eq!(shown[key], drawn[key], "{key}");
+    }
+    assert!(shown["seconds"]["topology"].as_f64() > Some(0.0));
+    // Without edges nobody asks where faces cross.
+    assert_eq!(stats("preview", &["-o", "-"])["counts"]["intersection_pairs"], 0);
+}
+
 #[test]
 fn bad_usage_is_told() {
     let spot = spot();
     let spot = spot.to_str().unwrap();
     for (arguments, message) in [
         (&["-o", "x.png"][..], "give models"),
+        (&[spot, "--expr", "x", "-o", "-"], "cannot be used with"),
+        (&[spot, "--grid", "x.csv", "-o", "-"], "cannot be used with"),
+        (&[spot, "--x", "0:1", "-o", "-"], "are for surfaces"),
+        (&["--expr", "x", "--expr", "y+", "-o", "-"], "in formula 2"),
         (&[spot, "--opacity", "0.5", "-o", "-"], "a-buffer"),
         (&[spot, "--size", "0x10", "-o", "-"], "WIDTHxHEIGHT"),
         (&[spot, "--tone", "--edges", "-o", "-"], "cannot be used with"),

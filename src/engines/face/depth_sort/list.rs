@@ -4,9 +4,8 @@
 //! that it has to precede, and so on down to the one with which the list began. All of them are marked.
 
 use super::boxes::Boxes;
-use super::relation::{is_across, may_precede};
-use super::{Error, Item, MAX_SPLITS, MAX_TESTS};
-use crate::engines::face::Counts;
+use super::relation::{Test, is_across, test};
+use super::{Counts, Error, Item, MAX_SPLITS, MAX_TESTS, Settled};
 use crate::engines::face::fragment::Easel;
 use crate::predicates::{PlaneName, Planes};
 use rustc_hash::FxHashMap;
@@ -119,14 +118,18 @@ impl<'a> List<'a> {
                     continue;
                 };
                 counts.tests += 1;
-                match self.states[q as usize] {
+                let (state, settled) = (self.states[q as usize], &mut counts.settled);
+                match state {
                     State::Painted => self.pass(),
                     State::Split(first) => {
                         self.pass();
                         self.also(first);
                     }
-                    _ if p == q || self.may_precede(p, q) => self.pass(),
-                    State::Waiting if self.may_precede(q, p) => self.begin(q),
+                    _ if p == q || self.may_precede(p, q, settled) => self.pass(),
+                    State::Waiting if self.may_precede(q, p, settled) => {
+                        counts.moves += 1;
+                        self.begin(q);
+                    }
                     State::Waiting => {
                         // They pierce each other, or each hides a part of the other.
                         if is_across(self.planes, self.item(p), self.item(q)) {
@@ -153,8 +156,11 @@ impl<'a> List<'a> {
         Ok(order)
     }
 
-    fn may_precede(&self, p: u32, q: u32) -> bool {
-        may_precede(self.planes, self.item(p), self.item(q))
+    /// Whether `p` may be painted before `q`: it hides no part of it.
+    fn may_precede(&self, p: u32, q: u32, settled: &mut Settled) -> bool {
+        let test = test(self.planes, self.item(p), self.item(q));
+        settled.count(test);
+        test != Test::None
     }
 
     /// The pair is settled.

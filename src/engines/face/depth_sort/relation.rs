@@ -3,6 +3,64 @@
 use super::Item;
 use crate::engines::face::fragment::{Fragment, Position};
 use crate::predicates::{Corner, Plane, PlaneName, Planes, Sign};
+use serde::Serialize;
+
+/// The tests of a pair as the module above numbers them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Test {
+    Depth,
+    Boxes,
+    /// Both are parts of one triangle.
+    OneTriangle,
+    Behind,
+    InFront,
+    /// Both are in one plane, and the order is that of faces.
+    OnePlane,
+    Apart,
+    Corners,
+    /// None of them holds.
+    None,
+}
+
+/// How often each test was the first to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Settled {
+    /// The depth of P begins where that of Q ends.
+    pub depth: u64,
+    /// The boxes of the images are apart.
+    pub boxes: u64,
+    /// Both are parts of one triangle.
+    pub one_triangle: u64,
+    /// P lies behind the plane of Q.
+    pub behind: u64,
+    /// Q lies in front of the plane of P.
+    pub in_front: u64,
+    /// Both lie in one plane, and P is of the later face.
+    pub one_plane: u64,
+    /// The images do not overlap.
+    pub apart: u64,
+    /// Q is nearer wherever the images overlap.
+    pub corners: u64,
+    /// No test held.
+    pub none: u64,
+}
+
+impl Settled {
+    pub(super) fn count(&mut self, test: Test) {
+        let count = match test {
+            Test::Depth => &mut self.depth,
+            Test::Boxes => &mut self.boxes,
+            Test::OneTriangle => &mut self.one_triangle,
+            Test::Behind => &mut self.behind,
+            Test::InFront => &mut self.in_front,
+            Test::OnePlane => &mut self.one_plane,
+            Test::Apart => &mut self.apart,
+            Test::Corners => &mut self.corners,
+            Test::None => &mut self.none,
+        };
+        *count += 1;
+    }
+}
 
 /// Where a fragment lies, as the eye sees it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -29,29 +87,35 @@ fn beside(planes: &Planes, item: &Item, other: &Item) -> Beside {
     }
 }
 
-/// Whether `p` may be painted before `q`: it hides no part of it. See the module above for the tests.
-pub(super) fn may_precede(planes: &Planes, p: &Item, q: &Item) -> bool {
-    if p.near >= q.far || !p.may_meet(q) {
-        return true;
+/// The first test that says that `p` may be painted before `q`, since it hides no part of it.
+pub(super) fn test(planes: &Planes, p: &Item, q: &Item) -> Test {
+    if p.near >= q.far {
+        return Test::Depth;
+    }
+    if !p.may_meet(q) {
+        return Test::Boxes;
     }
     if p.fragment.triangle() == q.fragment.triangle() {
-        return true;
+        return Test::OneTriangle;
     }
     let p_to_q = beside(planes, p, q);
     match p_to_q {
-        Beside::Behind => return true,
-        Beside::Within => return p.face >= q.face || !images_overlap(planes, p, q),
+        Beside::Behind => return Test::Behind,
+        Beside::Within if p.face >= q.face => return Test::OnePlane,
+        Beside::Within if images_overlap(planes, p, q) => return Test::None,
+        Beside::Within => return Test::Apart,
         Beside::InFront | Beside::Across => {}
     }
     let q_to_p = beside(planes, q, p);
     if q_to_p == Beside::InFront {
-        return true;
+        return Test::InFront;
     }
     if !images_overlap(planes, p, q) {
-        return true;
+        return Test::Apart;
     }
     // With one wholly on the wrong side of the other's plane the common part cannot be right.
-    p_to_q == Beside::Across && q_to_p == Beside::Across && is_behind_all_over(planes, p, q)
+    let may_be = p_to_q == Beside::Across && q_to_p == Beside::Across;
+    if may_be && is_behind_all_over(planes, p, q) { Test::Corners } else { Test::None }
 }
 
 /// Whether `fragment` of `item` lies across the plane of `other`.

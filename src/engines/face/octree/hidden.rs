@@ -1,5 +1,6 @@
 //! Octants from near to far, without those that are hidden.
 
+use super::seams::Seams;
 use super::{Leaves, Octant, Tree};
 use crate::engines::face::bsp::Order;
 use crate::engines::face::fragment::Easel;
@@ -9,6 +10,7 @@ use crate::predicates::{Corner, Plane, PlaneName, Planes, Sign};
 use crate::scene::Scene;
 use crate::view::Camera;
 use glam::{DVec2, DVec3};
+use serde::Serialize;
 
 /// In perspective, vertices with image coordinates beyond this do not make the quadtree larger.
 const FARTHEST: f64 = 4.0;
@@ -16,12 +18,23 @@ const FARTHEST: f64 = 4.0;
 /// Faces of more corners than this cover fragment by fragment only.
 const MAX_COVERING_CORNERS: usize = 16;
 
+/// What a view left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Hidden {
+    /// Octants that were found hidden, not counting those in them.
+    pub hidden_octants: u64,
+    /// Fragments that were found hidden, those in hidden octants included.
+    pub hidden_fragments: u64,
+    /// Fragments that were painted.
+    pub painted: u64,
+}
+
 impl Tree {
     /// The fragments from far to near, cut at the near plane, without most of those that nearer ones
     /// hide. `scene` must be that of the tree.
     ///
     /// What is left out is surely hidden; what is left may be.
-    pub fn paint_seen(&self, scene: &Scene, camera: &Camera) -> Painting {
+    pub fn paint_seen(&self, scene: &Scene, camera: &Camera) -> (Painting, Hidden) {
         let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
         let view = View {
             scene,
@@ -31,11 +44,24 @@ impl Tree {
         };
         let mut seen = Vec::new();
         let mut occupancy = view.empty();
+        let mut seams = Seams::new(&occupancy);
         let mut missing = self.of_face.clone();
+        let mut missing_of_triangle = self.of_triangle.clone();
+        let mut hidden =
+            Hidden { hidden_fragments: self.fragments().len() as u64, ..Hidden::default() };
         let mut leaves = Leaves::new(self, &planes, Order::NearToFar);
-        while let Some(root) = leaves.next(|octant| !view.hides(&occupancy, octant)) {
+        loop {
+            let next = leaves.next(|octant| {
+                let is_hidden = view.hides(&occupancy, octant);
+                hidden.hidden_octants += u64::from(is_hidden);
+                !is_hidden
+            });
+            let Some(root) = next else { break };
             for (fragment, facing) in self.forest.walk(&planes, root, Order::NearToFar) {
+                hidden.hidden_fragments -= 1;
                 let face = view.easel.face(fragment);
+                let triangle = fragment.triangle();
+                missing_of_triangle[triangle as usize] -= 1;
                 missing[face as usize] -= 1;
                 if facing != Sign::Zero
                     && let Some(kept) = fragment.kept(&planes, view.near.as_ref())
@@ -46,12 +72,17 @@ impl Tree {
                         let high = polygon.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
                         occupancy.is_covered(low, high)
                     });
-                    if !is_hidden {
+                    if is_hidden {
+                        hidden.hidden_fragments += 1;
+                    } else {
                         if let Some(polygon) = polygon {
                             occupancy.cover(&polygon);
                         }
                         seen.push((kept, facing));
                     }
+                }
+                if missing_of_triangle[triangle as usize] == 0 && facing != Sign::Zero {
+                    view.add_triangle(&mut seams, &mut occupancy, triangle, facing);
                 }
                 if missing[face as usize] == 0 && self.of_face[face as usize] > 1 {
                     view.cover_face(&mut occupancy, face);
@@ -62,7 +93,8 @@ impl Tree {
         for (fragment, facing) in seen.iter().rev() {
             view.easel.paint(&mut painting, fragment, *facing);
         }
-        painting
+        hidden.painted = painting.len() as u64;
+        (painting, hidden)
     }
 }
 
@@ -124,6 +156,32 @@ impl View<'_> {
             polygon.reverse();
         }
         Some(polygon)
+    }
+
+    /// Notes that all of a triangle is painted, if the near plane leaves it whole.
+    fn add_triangle(
+        &self,
+        seams: &mut Seams,
+        occupancy: &mut Occupancy,
+        triangle: u32,
+        facing: Sign,
+    ) {
+        let vertices = self.scene.triangles()[triangle as usize];
+        let corners = vertices.map(|vertex| self.planes.vertex(vertex));
+        if let Some(near) = &self.near
+            && corners.iter().any(|corner| self.planes.side(near, corner).1 == Sign::Negative)
+        {
+            return;
+        }
+        let images = corners.map(|corner| self.easel.image_within(corner.point, corner.error));
+        if images.iter().any(|&(_, error)| error.is_nan() || error >= seams.limit()) {
+            return;
+        }
+        let mut corners = [0, 1, 2].map(|k| (vertices[k], images[k].0));
+        if facing == Sign::Negative {
+            corners.reverse();
+        }
+        seams.add(corners, occupancy);
     }
 
     /// Marks the image of a face, if it is convex and its triangles all face one way: then they cover

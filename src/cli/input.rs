@@ -1,0 +1,82 @@
+//! What is shown: models, or a surface in their place.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Args;
+use hiddenline::mesh::Mesh;
+
+use super::models::{ModelArgs, ModelFiles};
+use super::paper::Notes;
+use super::surface::{SheetArgs, Sheets};
+
+#[derive(Args)]
+#[command(mut_arg("models", |models| {
+    let instead = ["expression", "grid", "points", "parametric"];
+    models.required(false).conflicts_with_all(instead)
+}))]
+pub(super) struct InputArgs {
+    #[command(flatten)]
+    model: ModelArgs,
+    #[command(flatten)]
+    surface: FormulaArgs,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Surface")]
+struct FormulaArgs {
+    /// Show the surface z = EXPR, a formula of x, y, r and theta, instead of models; give it once for
+    /// each sheet
+    #[arg(long = "expr", value_name = "EXPR", allow_hyphen_values = true)]
+    expression: Vec<String>,
+    #[command(flatten)]
+    sheets: SheetArgs,
+}
+
+/// What is shown.
+pub(super) enum Input {
+    Files(ModelFiles),
+    Sheets(Sheets),
+}
+
+impl InputArgs {
+    /// Checks what clap cannot; the error is a message about usage.
+    pub(super) fn input(self, default_samples: usize) -> Result<Input, String> {
+        let FormulaArgs { expression, sheets } = self.surface;
+        if let Some(sheets) = sheets.sheets(expression, default_samples)? {
+            return Ok(Input::Sheets(sheets));
+        }
+        let files = self.model.files()?;
+        if files.models.is_empty() {
+            return Err(
+                "give models, or a surface by --expr, --grid, --points or --parametric".into()
+            );
+        }
+        Ok(Input::Files(files))
+    }
+}
+
+impl Input {
+    pub(super) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
+        match self {
+            Self::Files(files) => files.read(),
+            Self::Sheets(sheets) => sheets.mesh(),
+        }
+    }
+
+    /// What a picture of it is called.
+    pub(super) fn title(&self) -> String {
+        match self {
+            Self::Files(files) => files.title(),
+            Self::Sheets(sheets) => sheets.title(),
+        }
+    }
+
+    /// The models' files.
+    pub(super) fn models(&self) -> &[PathBuf] {
+        match self {
+            Self::Files(files) => &files.models,
+            Self::Sheets(_) => &[],
+        }
+    }
+}

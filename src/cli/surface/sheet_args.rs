@@ -1,0 +1,153 @@
+//! Where surfaces come from, as it is typed: for drawings, fills and pictures alike.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use hiddenline::formula::{Formula, Variables};
+use hiddenline::surface::Placement;
+
+use super::sheets::{Input, Sheets};
+use crate::cli::values;
+
+/// Samples along each axis, unless given.
+pub(in crate::cli) const DEFAULT_SAMPLES: usize = 81;
+
+/// Everything but the formulas, which `surface` takes without the name of an option; each command
+/// that has this has an argument of the name `expression` for them.
+#[derive(Args)]
+#[command(next_help_heading = "Surface")]
+pub(in crate::cli) struct SheetArgs {
+    /// Heights from a file; `-` is standard input
+    ///
+    /// Rows of numbers, ESRI ASCII grid, NPY, or a gray PNG or TIFF, by the file's content.
+    #[arg(long, value_name = "FILE", conflicts_with = "expression")]
+    grid: Option<PathBuf>,
+    /// Scattered points from a file with x, y and z on each line; `-` is standard input
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["expression", "grid", "x", "y"])]
+    points: Option<PathBuf>,
+    /// Three formulas of u and v, for x, y and z
+    #[arg(long, value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["expression", "grid", "points", "x", "y"])]
+    parametric: Option<Vec<String>>,
+    /// Range of u; its ends may be formulas such as 2*pi [default: 0:1]
+    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    #[arg(requires = "parametric")]
+    u: Option<(f64, f64)>,
+    /// Range of v [default: 0:1]
+    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    #[arg(requires = "parametric")]
+    v: Option<(f64, f64)>,
+    /// Where the surface is, as a formula of x and y that is true there, such as x^2+y^2<=9
+    ///
+    /// The surface is cut along the border of this domain. `surface` draws the border with grid lines,
+    /// and by --lines border.
+    #[arg(long = "where", value_name = "EXPR", requires = "expression")]
+    domain: Option<String>,
+    /// Range of x [default: -5:5, for a file 0 to columns - 1]
+    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    x: Option<(f64, f64)>,
+    /// Range of y [default: -5:5, for a file 0 to rows - 1]
+    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    y: Option<(f64, f64)>,
+    /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]
+    #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
+    samples: Option<(usize, usize)>,
+    /// The first row of the file is the one with the largest y
+    #[arg(long, requires = "grid")]
+    flip_y: bool,
+    /// Factor for all heights
+    #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(default_value_t = 1.0)]
+    z_scale: f64,
+    /// Whether heights are drawn to the scale of x and y
+    ///
+    /// box: heights are scaled so that the box around the surface is 0.4 times as high as the longer
+    /// side of its base, then by --z-scale. The default is box, but data with --parametric.
+    #[arg(long, value_enum)]
+    aspect: Option<Aspect>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub(in crate::cli) enum Aspect {
+    Box,
+    Data,
+}
+
+impl SheetArgs {
+    /// The surface, if there is one; the error is a message about usage.
+    pub(in crate::cli) fn sheets(
+        self,
+        texts: Vec<String>,
+        default_samples: usize,
+    ) -> Result<Option<Sheets>, String> {
+        let samples = self.samples.unwrap_or((default_samples, default_samples));
+        let mut default_aspect = Aspect::Box;
+        let input = if let Some(path) = self.grid {
+            Input::File(path)
+        } else if let Some(path) = self.points {
+            Input::Points(path)
+        } else if let Some(texts) = self.parametric {
+            default_aspect = Aspect::Data;
+            let formulas = parsed(&texts, Variables::Parameters)?;
+            let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
+            Input::Parametric { formulas, u, v, samples }
+        } else if !texts.is_empty() {
+            let formulas = parsed(&texts, Variables::Plane)?;
+            let domain = self.domain.map(|text| {
+                Formula::parse(&text, Variables::Plane).map_err(|e| format!("in --where, {e}"))
+            });
+            Input::Formulas { texts, formulas, domain: domain.transpose()?, samples }
+        } else {
+            let is_given = self.x.is_some() || self.y.is_some() || self.samples.is_some();
+            if is_given || self.aspect.is_some() || self.z_scale != 1.0 {
+                return Err("--x, --y, --samples, --z-scale and --aspect are for surfaces: give \
+                            --expr, --grid, --points or --parametric"
+                    .into());
+            }
+            return Ok(None);
+        };
+        Ok(Some(Sheets {
+            input,
+            placement: Placement { x: self.x, y: self.y, flip_y: self.flip_y },
+            z_scale: self.z_scale,
+            aspect: self.aspect.unwrap_or(default_aspect),
+        }))
+    }
+}
+
+fn parsed(texts: &[String], variables: Variables) -> Result<Vec<Formula>, String> {
+    let parse = |(k, text): (usize, &String)| {
+        Formula::parse(text, variables).map_err(|error| match texts.len() {
+            1 => format!("in the formula, {error}"),
+            _ => format!("in formula {}, {error}", k + 1),
+        })
+    };
+    texts.iter().enumerate().map(parse).collect()
+}
+
+/// A number or a formula without variables, such as `2*pi`.
+fn constant(text: &str) -> Result<f64, String> {
+    let formula = Formula::parse(text, Variables::Plane).map_err(|error| error.to_string())?;
+    let value = formula.value(f64::NAN, f64::NAN);
+    if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
+}
+
+/// Two numbers, the smaller first, with a colon between them.
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let (from, to) = text.split_once(':').ok_or("give two numbers, as in -2:2")?;
+    let (from, to) = (constant(from)?, constant(to)?);
+    if from < to { Ok((from, to)) } else { Err("the first number must be the smaller one".into()) }
+}
+
+/// Numbers of samples along x and y.
+fn samples(text: &str) -> Result<(usize, usize), String> {
+    let number = |text: &str| {
+        let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
+        if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }
+    };
+    match text.split_once('x') {
+        Some((x, y)) => Ok((number(x)?, number(y)?)),
+        None => number(text).map(|n| (n, n)),
+    }
+    .map_err(|error: &str| error.to_owned())
+}
