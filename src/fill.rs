@@ -136,7 +136,7 @@ impl Filled {
 /// Fills the visible regions of a scene's faces.
 ///
 /// # Errors
-/// See [`FillError`]; all are told before the work begins.
+/// See [`FillError`].
 pub fn fill(scene: &Scene, camera: &Camera, options: &FillOptions) -> Result<Filled, FillError> {
     options.check()?;
     fill_prepared(&Prepared::new(scene, options.engine)?, camera, options)
@@ -154,7 +154,7 @@ pub fn fill_prepared(
 ) -> Result<Filled, FillError> {
     options.check()?;
     let (painting, work) = prepared.solve(camera, &options.settings)?;
-    let filled = fill_painting(prepared.scene(), camera, &painting, prepared.engine(), options);
+    let filled = fill_painting(prepared.scene(), camera, &painting, work.engine(), options);
     Ok(Filled { work: Some(work), ..filled })
 }
 

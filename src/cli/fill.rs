@@ -201,6 +201,7 @@ impl Picture<'_> {
             fill_prepared(self.prepared, camera, &options)
         })?;
         run.stats.counts.fill = filled.work;
+        run.stats.engine = filled.engine.name();
         let page = match &self.frame {
             Some(_) => rough,
             None => {

@@ -41,6 +41,17 @@ impl BoxIndex {
         ys.flat_map(move |y| xs.clone().map(move |x| y * n + x))
     }
 
+    /// Whether more than `most` pairs of boxes overlap. O(boxes + pairs up to that).
+    pub(crate) fn has_more_pairs(&self, most: u64) -> bool {
+        let (mut found, mut n_twice) = (Vec::new(), 0u64);
+        self.boxes.iter().any(|&bounds| {
+            self.overlapping(bounds, &mut found);
+            // A box overlaps itself, unless it has no width.
+            n_twice += (found.len() as u64).saturating_sub(1);
+            n_twice > 2 * most
+        })
+    }
+
     /// The boxes that have more than a border in common with a box, in order.
     pub(crate) fn overlapping(&self, bounds: (DVec2, DVec2), found: &mut Vec<u32>) {
         found.clear();

@@ -91,15 +91,26 @@ pub enum Error {
     /// Told before starting.
     #[error(
         "about {0} pairs of faces overlap in the image and in depth, which would take minutes; \
-         use bsp, octree or another engine"
+         take --engine bsp or octree"
     )]
     TooManyPairs(u64),
     /// Told before starting.
-    #[error("about {0} pairs of triangles pierce each other, too many to sort; use bsp or warnock")]
+    #[error(
+        "about {0} pairs of triangles pierce each other, too many to sort; \
+             take --engine warnock"
+    )]
     TooManyPiercings(u64),
     /// Told while sorting.
-    #[error("the faces had to be split {0} times and are still not in order; use bsp or warnock")]
+    #[error(
+        "the faces had to be split {0} times and are still not in order; \
+         take --engine bsp or warnock"
+    )]
     TooManySplits(u64),
+    /// Told while sorting.
+    #[error(
+        "the faces were compared {0} times and are still not in order; take --engine bsp or warnock"
+    )]
+    TooManyTests(u64),
 }
 
 /// What sorting took.

@@ -95,6 +95,17 @@ pub enum FaceError {
         /// The engine that takes more.
         instead: &'static str,
     },
+    /// It would take too long.
+    #[error(
+        "{engine} takes at most {most} pairs of faces that overlap in the image, and there are more; \
+         take --engine warnock"
+    )]
+    TooManyPairs {
+        /// The engine.
+        engine: &'static str,
+        /// How many it takes.
+        most: u64,
+    },
     /// The leaves are too small.
     #[error("{n:.0} leaves are too many; give a larger --leaf, {most:.0} are the most")]
     TooManyLeaves {
@@ -129,6 +140,8 @@ pub const MOST_EXACT: usize = 6_000;
 pub struct Prepared<'a> {
     scene: &'a Scene,
     engine: Engine,
+    /// Whether another engine may stand in where this one would take too long.
+    is_free: bool,
     trees: Trees,
 }
 
@@ -143,10 +156,15 @@ enum Trees {
 impl<'a> Prepared<'a> {
     /// Chooses the engine and does what does not depend on the view.
     ///
+    /// [`Engine::Auto`] takes [`Engine::Warnock`] for faces that pierce each other in heaps, which the
+    /// others would cut into millions of fragments; of the rest see [`MOST_EXACT`].
+    ///
     /// # Errors
     /// [`FaceError::TooManyFragments`].
     pub fn new(scene: &'a Scene, engine: Engine) -> Result<Self, FaceError> {
+        let is_free = engine == Engine::Auto;
         let engine = match engine {
+            Engine::Auto if bsp::check_piercings(scene).is_err() => Engine::Warnock,
             Engine::Auto if scene.triangles().len() <= MOST_EXACT => Engine::WeilerAtherton,
             Engine::Auto => Engine::Bsp,
             named => named,
@@ -156,10 +174,11 @@ impl<'a> Prepared<'a> {
             Engine::Octree => Trees::Octants(octree::Tree::new(scene)?),
             _ => Trees::None,
         };
-        Ok(Self { scene, engine, trees })
+        Ok(Self { scene, engine, is_free, trees })
     }
 
-    /// The engine that was chosen.
+    /// The engine that was chosen; where it would take too long for a view, [`Work::engine`] tells
+    /// which one stood in.
     pub fn engine(&self) -> Engine {
         self.engine
     }
@@ -173,7 +192,7 @@ impl<'a> Prepared<'a> {
     /// counts in each view of it.
     ///
     /// # Errors
-    /// See [`FaceError`]; all are told before any work is done but counting.
+    /// See [`FaceError`]; all but those of [`depth_sort`] that say so are told before the work begins.
     pub fn solve(
         &self,
         camera: &Camera,
@@ -190,16 +209,27 @@ impl<'a> Prepared<'a> {
                 let (painting, counts) = depth_sort::solve(scene, camera)?;
                 Ok((painting, Work::DepthSort(counts)))
             }
-            (Engine::Warnock, _) => {
-                let Settings { leaf, subdivision, .. } = *settings;
-                let options = warnock::Options { leaf, subdivision, window: None };
-                let (painting, counts) = warnock::solve(scene, camera, &options)?;
-                Ok((painting, Work::Warnock(counts)))
-            }
+            (Engine::Warnock, _) => self.by_windows(camera, settings),
             (Engine::Auto | Engine::WeilerAtherton | Engine::Bsp | Engine::Octree, _) => {
-                let (painting, counts) = weiler_atherton::solve(scene, camera)?;
-                Ok((painting, Work::WeilerAtherton(counts)))
+                match weiler_atherton::solve(scene, camera) {
+                    Ok((painting, counts)) => Ok((painting, Work::WeilerAtherton(counts))),
+                    Err(FaceError::TooManyPairs { .. }) if self.is_free => {
+                        self.by_windows(camera, settings)
+                    }
+                    Err(error) => Err(error),
+                }
             }
         }
+    }
+
+    fn by_windows(
+        &self,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<(Painting, Work), FaceError> {
+        let Settings { leaf, subdivision } = *settings;
+        let options = warnock::Options { leaf, subdivision, window: None };
+        let (painting, counts) = warnock::solve(self.scene, camera, &options)?;
+        Ok((painting, Work::Warnock(counts)))
     }
 }

@@ -37,7 +37,7 @@
 //! pair that crosses or is sorted wrongly: O(n²) at worst. What overlaps is found by an index of boxes.
 //! On two busy cores, with reading and writing: a smooth closed mesh of 5,900 triangles 0.6 s, an
 //! assembly of 9,000 1.1 s, 1,400 faces that pierce each other in heaps 2.6 s. More than [`MOST_FACES`]
-//! are refused at once.
+//! or [`MOST_PAIRS`] are refused at once.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -56,6 +56,10 @@ use crate::view::Camera;
 
 /// More faces (triangles, of bent ones) in the image than this are refused.
 pub const MOST_FACES: usize = 10_000;
+
+/// More pairs of faces whose boxes overlap in the image than this are refused: half a minute, where
+/// all of them cross.
+pub const MOST_PAIRS: u64 = 1_000_000;
 
 /// Polygons that one piece of parallel work compares with the first one, at least.
 const MIN_LEN: usize = 8;
@@ -84,7 +88,7 @@ pub struct Counts {
 /// faces. See the module for what is exact.
 ///
 /// # Errors
-/// [`FaceError::TooManyFaces`].
+/// [`FaceError::TooManyFaces`], [`FaceError::TooManyPairs`].
 pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceError> {
     let images = Images::new(scene, camera);
     let n = images.flats.len();
@@ -96,6 +100,10 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceE
             instead: "bsp",
         });
     }
+    let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
+    if index.has_more_pairs(MOST_PAIRS) {
+        return Err(FaceError::TooManyPairs { engine: "weiler-atherton", most: MOST_PAIRS });
+    }
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_by(|&a, &b| {
         let nearest = |flat: u32| images.flats[flat as usize].nearest;
@@ -105,7 +113,6 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceE
     for (k, &flat) in order.iter().enumerate() {
         rank[flat as usize] = k;
     }
-    let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
     let mut work = Work {
         images: &images,
         clipping: vec![false; n],

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{depth_sort, octree, warnock, weiler_atherton};
+use super::{Engine, depth_sort, octree, warnock, weiler_atherton};
 
 /// How often fragments were cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -55,4 +55,17 @@ pub enum Work {
     Warnock(warnock::Counts),
     /// Of [`weiler_atherton`].
     WeilerAtherton(weiler_atherton::Counts),
+}
+
+impl Work {
+    /// The engine that did it.
+    pub fn engine(&self) -> Engine {
+        match self {
+            Self::DepthSort(_) => Engine::DepthSort,
+            Self::Bsp { .. } => Engine::Bsp,
+            Self::Octree { .. } => Engine::Octree,
+            Self::Warnock(_) => Engine::Warnock,
+            Self::WeilerAtherton(_) => Engine::WeilerAtherton,
+        }
+    }
 }

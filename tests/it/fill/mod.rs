@@ -3,6 +3,7 @@
 mod borders;
 mod colors;
 mod counts;
+mod heaps;
 mod judge;
 mod program;
 mod regions;

@@ -39,7 +39,7 @@ const ALONE: usize = 512;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
     "the faces of the model pierce each other too often and would be cut into millions of fragments; \
-     use warnock"
+     take --engine warnock"
 )]
 pub struct TooManyFragments;
 

@@ -148,8 +148,11 @@ impl<'a> List<'a> {
                         None => self.pass(),
                     },
                 }
-                if counts.splits > max_splits || counts.tests > MAX_TESTS {
+                if counts.splits > max_splits {
                     return Err(Error::TooManySplits(counts.splits));
+                }
+                if counts.tests > MAX_TESTS {
+                    return Err(Error::TooManyTests(counts.tests));
                 }
             }
         }
