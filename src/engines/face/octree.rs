@@ -41,10 +41,9 @@
 //!
 //! | model | triangles | fragments | single | together |
 //! |---|---|---|---|---|
-//! | street of large faces | 2 014 | 3 756 | 3 426 | 3 258 |
-//! | cow | 5 856 | 13 310 | 13 064 | 9 580 |
-//! | town | 36 271 | 88 791 | 86 310 | 86 102 |
-//! | statue | 70 000 | 166 506 | 165 253 | 88 215 |
+//! | street of large faces | 2 014 | 3 756 | 3 426 | 3 223 |
+//! | cow | 5 856 | 13 310 | 13 064 | 7 878 |
+//! | statue | 70 000 | 166 506 | 165 253 | 83 025 |
 //!
 //! Half of the fragments of a closed body face away. Of these stay such as lie where a silhouette runs
 //! in front of them, or where the faces in front reach into an octant that is not painted yet.
