@@ -50,10 +50,11 @@ impl Seams {
         }
     }
 
-    /// How far images of corners may be off: then seams that are off keep out of a square as long as
-    /// they are noted with twice the rim of the squares around them.
+    /// How far images of corners may be off. Open seams keep out of squares with twice the rim around
+    /// them, so true ones with more than one and a half; a triangle that comes nearer than one rim to
+    /// a square reaches truly into that.
     pub(super) fn limit(&self) -> f64 {
-        self.rim / 2.0
+        self.rim / 4.0
     }
 
     /// Adds a triangle that is painted, its corners counter-clockwise in the image, and marks what is
@@ -87,14 +88,14 @@ impl Seams {
         if !is_open {
             self.turns.remove(&[low.0, high.0]);
         }
-        let rim = 2.0 * self.rim / self.size;
+        let rim = self.rim / self.size;
         let (open, changed) = (&mut self.open, &mut self.changed);
         if is_open && !was_open {
-            squares(low.1, high.1, rim, |square| open[square] += 1);
+            squares(low.1, high.1, 2.0 * rim, |square| open[square] += 1);
             let is_reached = &mut self.is_reached;
-            squares(low.1, high.1, 0.0, |square| is_reached[square] = true);
+            squares(low.1, high.1, rim, |square| is_reached[square] = true);
         } else if was_open && !is_open {
-            squares(low.1, high.1, rim, |square| {
+            squares(low.1, high.1, 2.0 * rim, |square| {
                 open[square] -= 1;
                 if open[square] == 0 {
                     changed.push(square as u32);
@@ -138,12 +139,16 @@ mod tests {
         };
         let middle = (0, DVec2::splat(0.5));
         let (low, high) = (DVec2::splat(0.45), DVec2::splat(0.55));
+        let mut paint = |triangle: [(u32, DVec2); 3], occupancy: &mut Occupancy| {
+            occupancy.cover(&triangle.map(|(_, image)| image));
+            seams.add(triangle, occupancy);
+        };
         for k in 0..39 {
-            seams.add([middle, p(k), p(k + 1)], &mut occupancy);
+            paint([middle, p(k), p(k + 1)], &mut occupancy);
         }
         assert!(!occupancy.is_covered(low, high));
         assert!(occupancy.is_covered(DVec2::new(0.3, 0.45), DVec2::new(0.4, 0.55)));
-        seams.add([middle, p(39), p(0)], &mut occupancy);
+        paint([middle, p(39), p(0)], &mut occupancy);
         // No single face covers any square along the seams.
         assert!(occupancy.is_covered(low, high));
         assert!(!occupancy.is_covered(low, DVec2::new(0.95, 0.55)));
