@@ -24,7 +24,7 @@ use hiddenline::writers::NoFills;
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
-use super::output::{OutputArgs, OutputOptions};
+use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
 use super::paper::{Run, check_terminal};
 use super::progress::Progress;
@@ -46,12 +46,24 @@ Examples:
   hiddenline fill part.stl --turntable 24 -o turn.svg
       turn-001.svg to turn-024.svg, once around.";
 
+// Of the formats that there are, these have filled areas.
+const OUTPUT_HELP: &str = "\
+File to write, its format given by the extension; `-` is standard output
+
+.svg; .pdf; .png";
+const FORMAT_HELP: &str =
+    "Format of the output: svg, pdf or png [default: by extension; svg on standard output]";
+
 /// Fill the visible faces of models with color
 ///
 /// Reads what `draw` reads, looks from where `draw` looks, and writes filled areas for print as SVG, PDF
 /// or PNG, with the lines of `draw` on top on a layer of their own.
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(
+    after_help = EXAMPLES,
+    mut_arg("output", |arg| arg.long_help(OUTPUT_HELP)),
+    mut_arg("format", |arg| arg.help(FORMAT_HELP).hide_possible_values(true)),
+)]
 pub(super) struct FillArgs {
     #[command(flatten)]
     model: ModelArgs,
@@ -113,6 +125,14 @@ impl FillArgs {
         if areas.turntable.is_some() && output.path.is_none() {
             return Err("--turntable makes several files; give -o FILE".into());
         }
+        let view = camera.view_source();
+        let inputs = files.inputs().chain(view.input()).chain(output.inputs.clone());
+        let inputs: Vec<PathBuf> = inputs.collect();
+        check_place(output.path.as_deref(), &inputs)?;
+        for number in 1..=areas.turntable.map_or(0, u32::from) {
+            let path = output.path.as_deref().map(|path| numbered(path, number));
+            check_place(path.as_deref(), &inputs)?;
+        }
         let pen_width_mm = page.pen_width_mm();
         let lines =
             DrawOptions { lines: edges.lines, crease_deg: edges.crease, ..Default::default() };
@@ -120,7 +140,7 @@ impl FillArgs {
         fill.check().map_err(|error| error.to_string())?;
         Ok(Job {
             files,
-            view: camera.view_source(),
+            view,
             fill,
             leaf_mm: areas.leaf.unwrap_or(pen_width_mm),
             seam_mm: areas.seam,
@@ -141,7 +161,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = job.edges.map(|edges| edges.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, &run.progress, &mut run.stats)?;
-    run.notes = notes;
+    run.notes.add(notes);
     let mut fill = job.fill.clone();
     for path in &job.files.models {
         let found = material_colors(path);
@@ -155,7 +175,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
-    let Run { output, start, progress, stats, mut notes } = run;
+    let Run { output, start, progress, stats, mut notes, unit_mm } = run;
     drop(progress);
     let cameras = (0..n).map(|number| turned(&camera, f64::from(number) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
@@ -164,7 +184,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
-        let run = Run { output, start, progress, stats: stats.clone(), notes };
+        let run = Run { output, start, progress, stats: stats.clone(), notes, unit_mm };
         let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;
     }

@@ -4,7 +4,7 @@ mod picture;
 
 use std::error::Error;
 use std::io::{self, IsTerminal};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -15,10 +15,13 @@ use hiddenline::mesh::Mesh;
 use hiddenline::preview::{self, Options};
 use hiddenline::stats::peak_bytes;
 use hiddenline::surface::Grid;
+use hiddenline::writers::Format;
 
 use self::picture::PictureArgs;
 use super::camera::{CameraArgs, ViewSource};
+use super::formulas::in_formula;
 use super::models::{ModelArgs, ModelFiles};
+use super::output::check_place;
 use super::paper::{Notes, start_threads};
 use super::paths::is_dash;
 use super::progress::Progress;
@@ -121,7 +124,7 @@ impl PreviewArgs {
         let input = match formula.expr {
             Some(text) => Input::Formula {
                 formula: Formula::parse(&text, Variables::Plane)
-                    .map_err(|error| format!("in the formula, {error}"))?,
+                    .map_err(|error| in_formula("the formula", &text, &error))?,
                 x: formula.x,
                 y: formula.y,
                 samples: formula.samples,
@@ -131,18 +134,37 @@ impl PreviewArgs {
         if matches!(&input, Input::Files(files) if files.models.is_empty()) {
             return Err("give models, or a surface by --expr".into());
         }
+        let path = output.filter(|path| !is_dash(path));
+        let view = camera.view_source();
+        let models = match &input {
+            Input::Files(files) => Some(files.inputs()),
+            Input::Formula { .. } => None,
+        };
+        check_place(path.as_deref(), models.into_iter().flatten().chain(view.input()))?;
+        check_picture(path.as_deref())?;
         Ok(Job {
             input,
-            view: camera.view_source(),
+            view,
             options: picture.options()?,
             edges: picture.edges.then_some(picture.lines),
-            path: output.filter(|path| !is_dash(path)),
+            path,
             threads: threads.map(usize::from),
             engine: picture.engine_name(),
             stats,
             quiet,
         })
     }
+}
+
+/// Refuses the name of another kind of file than a PNG; what is no file may be called anything.
+fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
+    let Some(path) = path else { return Ok(()) };
+    let is_device = path.metadata().is_ok_and(|found| !found.is_file());
+    if is_device || Format::from_path(path) == Some(Format::Png) {
+        return Ok(());
+    }
+    let path = path.display();
+    Err(format!("`{path}` has not the extension .png; a picture is written as PNG only").into())
 }
 
 /// Does the job; the error is a message for the user.
@@ -178,9 +200,11 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     if !job.quiet {
         notes.warnings.iter().for_each(|warning| messages::warning(warning));
         let (width, height) = job.options.size;
+        messages::plain(&notes.summary);
+        let name = job.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
         messages::plain(format_args!(
-            "{}; {width} x {height} pixels by {}, {:.2} s",
-            notes.summary, job.engine, seconds.total
+            "{name}  {width} x {height} pixels by {}, {:.2} s",
+            job.engine, seconds.total
         ));
     }
     if job.stats {

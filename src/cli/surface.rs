@@ -7,6 +7,7 @@ mod smoothness;
 use std::error::Error;
 use std::path::Path;
 
+use glam::DVec3;
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
 use hiddenline::dressing::{Titles, dress};
 use hiddenline::engines::edge::Engine;
@@ -53,6 +54,7 @@ pub(super) struct Job {
     /// `None` for no axes.
     titles: Option<Titles>,
     page: PageOptions,
+    unit_mm: f64,
     pen_width_mm: f64,
     output: OutputOptions,
 }
@@ -60,11 +62,13 @@ pub(super) struct Job {
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
+    run.unit_mm = job.unit_mm;
     let stats = &mut run.stats;
     run.progress.stage("sampling");
     let Sampled { surface, factor, camera, refined } =
         timed(&mut stats.seconds.read, || smoothness::sample(job))?;
     let bounds = surface.bounds();
+    run.notes.warnings.extend(without_levels(job, bounds, factor)?);
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     run.progress.stage("drawing");
     let grid = surface.only_grid(job, &camera)?;
@@ -80,6 +84,41 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     stats.points = drawing.n_points();
     run.notes.summary = format!("{}: {}", title(job), surface.described());
     run.draw(&drawing, &camera, &job.page, plot_options(job), &usual)
+}
+
+/// Says so if there are no level curves; an error if nothing else is to be drawn.
+fn without_levels(
+    job: &Job,
+    (low, high): (DVec3, DVec3),
+    factor: f64,
+) -> Result<Option<String>, String> {
+    let Some(levels) = &job.levels else { return Ok(None) };
+    let (one, other) = match factor {
+        0.0 => (0.0, 0.0),
+        _ => (low.z / factor + 0.0, high.z / factor + 0.0),
+    };
+    let range = one.min(other)..=one.max(other);
+    let (least, most) = (brief(*range.start()), brief(*range.end()));
+    let message = match levels {
+        _ if low.z == high.z => {
+            format!("the surface is level, {least} high everywhere: it has no level curves")
+        }
+        Levels::At(heights) if heights.iter().all(|z| !range.contains(z)) => {
+            format!("the surface has heights from {least} to {most}: none of --levels is there")
+        }
+        _ => return Ok(None),
+    };
+    let draws_more = job.lines.along_x || job.lines.along_y;
+    if draws_more || job.folds || job.border || job.all_edges {
+        Ok(Some(message))
+    } else {
+        Err(format!("{message}; --lines both draws grid lines"))
+    }
+}
+
+/// A number with at most six digits that count.
+fn brief(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// What to do with the strokes. Those of a grid run along its lines already, in a short way from
@@ -157,7 +196,9 @@ fn draw_by_mesh(
             }
         }
         if mesh.n_triangles() == 0 {
-            return Err("no four neighboring samples have a height: nothing to draw".into());
+            return Err("no four neighboring samples have a height: nothing to draw; \
+                        give more --samples or another range by --x and --y"
+                .into());
         }
         if let Some(levels) = &job.levels {
             let (low, high) = surface.bounds();

@@ -6,12 +6,13 @@ use clap::{Args, ValueEnum};
 use hiddenline::dressing::Titles;
 use hiddenline::engines::surface::Lines;
 use hiddenline::formula::{Formula, Variables};
-use hiddenline::surface::Placement;
+use hiddenline::surface::{MAX_SAMPLES, Placement};
 
 use super::Job;
 use super::sheets::Input;
 use crate::cli::camera::CameraArgs;
-use crate::cli::output::OutputArgs;
+use crate::cli::formulas::in_formula;
+use crate::cli::output::{OutputArgs, check_place};
 use crate::cli::page::PageArgs;
 use crate::cli::{Refused, values};
 
@@ -79,6 +80,7 @@ struct InputArgs {
     points: Option<PathBuf>,
     /// Three formulas of u and v, for x, y and z
     #[arg(long, value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true)]
+    #[arg(value_parser = parametric)]
     #[arg(conflicts_with_all = ["expression", "grid", "points", "x", "y"])]
     parametric: Option<Vec<String>>,
     /// Range of u; its ends may be formulas such as 2*pi [default: 0:1]
@@ -222,7 +224,8 @@ fn levels(text: &str) -> Result<Levels, String> {
 
 /// A number or a formula without variables, such as `2*pi`.
 fn constant(text: &str) -> Result<f64, String> {
-    let formula = Formula::parse(text, Variables::Plane).map_err(|error| error.to_string())?;
+    let parsed = Formula::parse(text, Variables::Plane);
+    let formula = parsed.map_err(|error| in_formula(&format!("`{text}`"), text, &error))?;
     let value = formula.value(f64::NAN, f64::NAN);
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
 }
@@ -240,11 +243,24 @@ pub(in crate::cli) fn samples(text: &str) -> Result<(usize, usize), String> {
         let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
         if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }
     };
-    match text.split_once('x') {
-        Some((x, y)) => Ok((number(x)?, number(y)?)),
-        None => number(text).map(|n| (n, n)),
+    let (x, y) = text.split_once('x').unwrap_or((text, text));
+    let (x, y) = (number(x)?, number(y)?);
+    if x.checked_mul(y).is_none_or(|n| n > MAX_SAMPLES) {
+        return Err(format!("{x} × {y} samples are more than {MAX_SAMPLES}"));
     }
-    .map_err(|error: &str| error.to_owned())
+    Ok((x, y))
+}
+
+/// One of the formulas of --parametric. Since formulas may begin with a minus, clap takes the options
+/// after too few of them for more.
+fn parametric(text: &str) -> Result<String, String> {
+    let is_option = |rest: &str| rest.starts_with(|c: char| c.is_ascii_alphabetic());
+    let is_option = text.strip_prefix("--").is_some_and(is_option)
+        || ["-o", "-q", "-h", "-V"].iter().any(|short| text == *short);
+    if is_option {
+        return Err("three formulas are needed, for x, y and z".into());
+    }
+    Ok(text.to_owned())
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {
@@ -258,11 +274,11 @@ impl SurfaceArgs {
         let samples = surface.samples.unwrap_or((DEFAULT_SAMPLES, DEFAULT_SAMPLES));
         let parse = |texts: &[String], variables| {
             let parse = |(k, text): (usize, &String)| {
-                let which = if texts.len() > 1 { format!("{}", k + 1) } else { String::new() };
-                Formula::parse(text, variables).map_err(|error| match which.as_str() {
-                    "" => format!("in the formula, {error}"),
-                    which => format!("in formula {which}, {error}"),
-                })
+                let which = match texts.len() {
+                    1 => "the formula".to_owned(),
+                    n => format!("formula {} of {n}", k + 1),
+                };
+                Formula::parse(text, variables).map_err(|error| in_formula(&which, text, &error))
             };
             texts.iter().enumerate().map(parse).collect::<Result<Vec<_>, _>>()
         };
@@ -281,7 +297,9 @@ impl SurfaceArgs {
             let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
             let formulas = parse(&texts, Variables::Plane)?;
             let domain = surface.domain.map(|text| {
-                Formula::parse(&text, Variables::Plane).map_err(|e| format!("in --where, {e}"))
+                let parsed = Formula::parse(&text, Variables::Plane);
+                let parsed = parsed.map_err(|error| in_formula("--where", &text, &error));
+                parsed.map(|formula| (formula, text))
             });
             Input::Formulas { texts, formulas, domain: domain.transpose()?, samples }
         };
@@ -321,13 +339,21 @@ impl SurfaceArgs {
             }
             _ => {}
         }
+        let view = camera.view_source();
+        let output = output.options(lines.exact)?;
+        let file = match &input {
+            Input::File(path) | Input::Points(path) => Some(path.clone()),
+            _ => None,
+        };
+        let inputs = file.into_iter().chain(view.input()).chain(output.inputs.clone());
+        check_place(output.path.as_deref(), inputs)?;
         let aspect = surface.aspect.unwrap_or(default_aspect);
         Ok(Job {
             input,
             placement: Placement { x: surface.x, y: surface.y, flip_y: surface.flip_y },
             z_scale: surface.z_scale,
             aspect: if lines.exact { Aspect::Data } else { aspect },
-            view: camera.view_source(),
+            view,
             lines: along,
             levels: has(LineName::Levels)
                 .then(|| lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS))),
@@ -339,8 +365,9 @@ impl SurfaceArgs {
             underside: lines.underside,
             titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },
             page: page.options(),
+            unit_mm: page.unit_mm(),
             pen_width_mm: page.pen_width_mm(),
-            output: output.options(lines.exact)?,
+            output,
         })
     }
 }

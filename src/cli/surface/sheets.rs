@@ -27,7 +27,8 @@ pub(super) enum Input {
     Formulas {
         texts: Vec<String>,
         formulas: Vec<Formula>,
-        domain: Option<Formula>,
+        /// The condition, and how it is written.
+        domain: Option<(Formula, String)>,
         samples: (usize, usize),
     },
     File(PathBuf),
@@ -172,6 +173,43 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
+/// Why no sample has a height, and what can be done about it.
+fn nothing_to_draw(job: &Job) -> String {
+    let range = |(from, to): (f64, f64)| format!("{from}:{to}");
+    match &job.input {
+        Input::Formulas { texts, formulas, domain, samples } => {
+            let x = job.placement.x.unwrap_or(DEFAULT_RANGE);
+            let y = job.placement.y.unwrap_or(DEFAULT_RANGE);
+            let has_value = |formula| {
+                Grid::sample(formula, x, y, *samples).is_ok_and(|grid| grid.heights().is_some())
+            };
+            let what = match domain {
+                Some((_, text)) if formulas.iter().any(has_value) => {
+                    format!("the condition --where `{text}` holds")
+                }
+                _ if texts.len() > 1 => format!("`{}` have values", texts.join("`, `")),
+                _ => format!("`{}` has a value", texts.join("")),
+            };
+            let (columns, rows) = samples;
+            format!(
+                "no sample has a height: {what} at none of {columns} × {rows} samples of x in {} \
+                 and y in {}; give another range by --x and --y, or more --samples",
+                range(x),
+                range(y)
+            )
+        }
+        Input::Parametric { u, v, .. } => format!(
+            "no sample has a place in space: the formulas have no values for u in {} and v in {}; \
+             give another range by --u and --v",
+            range(*u),
+            range(*v)
+        ),
+        Input::File(path) | Input::Points(path) => {
+            format!("{}: no sample has a height: nothing to draw", path.display())
+        }
+    }
+}
+
 /// The surface with `refined` times as many cells along both axes as asked for, if it is given by
 /// formulas, and the factor that its heights were multiplied by.
 pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn Error>> {
@@ -191,7 +229,7 @@ pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn 
                     let sample = |formula| Grid::sample(formula, x, y, samples);
                     Surface::Grids(formulas.map(sample).collect::<Result<_, _>>()?)
                 }
-                Some(domain) => {
+                Some((domain, _)) => {
                     let sample = |formula| TrimmedGrid::sample(formula, domain, x, y, samples);
                     let grids = formulas.map(sample).collect::<Result<Vec<_>, _>>()?;
                     if grids.iter().all(TrimmedGrid::is_whole) {
@@ -236,7 +274,7 @@ pub(super) fn read(job: &Job, refined: usize) -> Result<(Surface, f64), Box<dyn 
     };
     let (low, high) = surface.bounds();
     if low.x > high.x {
-        return Err("no sample has a height: nothing to draw".into());
+        return Err(nothing_to_draw(job).into());
     }
     let size = high - low;
     let fitted = BOX_HEIGHT * size.x.max(size.y) / size.z;
