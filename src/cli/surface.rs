@@ -9,7 +9,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
-use hiddenline::dressing::{Titles, dress};
+use hiddenline::dressing::{Titles, dress, missing};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
@@ -78,12 +78,21 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     };
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
+        run.notes.warnings.extend(unknown_letters(titles));
     }
     let usual = joining(&drawing, grid.is_some(), &camera);
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
     run.notes.summary = format!("{}: {}", title(job), surface.described());
     run.draw(&drawing, &camera, &job.page, plot_options(job), &usual)
+}
+
+/// Says which letters of the titles cannot be drawn.
+fn unknown_letters(titles: &Titles) -> Option<String> {
+    let letters = missing(&[titles.axes.join(""), titles.drawing.clone()].concat());
+    let letters: Vec<String> = letters.iter().map(|letter| format!("`{letter}`")).collect();
+    let letters = letters.join(", ");
+    (!letters.is_empty()).then(|| format!("the font has no {letters}: drawn as question marks"))
 }
 
 /// Says so if there are no level curves; an error if nothing else is to be drawn.

@@ -60,7 +60,8 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 
 /// A length in millimetres, above 0.
 pub(super) fn positive_length(text: &str) -> Result<f64, String> {
-    length(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("must be above 0".into()) })
+    let length = parse_length_mm(text).map_err(|error| error.to_string())?;
+    if length > 0.0 { Ok(length) } else { Err("must be above 0".into()) }
 }
 
 /// A length in millimetres, above 0, or in meters as in `10m`.

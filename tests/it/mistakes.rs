@@ -142,8 +142,8 @@ fn negative_numbers_are_values_that_may_be_too_small() {
 #[test]
 fn unknown_options_are_not_taken_for_files() {
     let (_keep, folder) = with_files();
-    let unknown = told(&folder, &["draw", "cube.obj", "--sideways"], 2);
-    assert!(unknown.contains("--sideways") && !unknown.contains("tip"), "{unknown}");
+    let unknown = told(&folder, &["draw", "cube.obj", "--quux"], 2);
+    assert!(unknown.contains("--quux") && !unknown.contains("tip"), "{unknown}");
     for size in ["--width", "--height=500", "--size"] {
         let stderr = told(&folder, &["draw", "cube.obj", size], 2);
         assert!(stderr.contains("'--page WIDTHxHEIGHT'"), "{stderr}");
@@ -325,6 +325,18 @@ fn filling_tells_of_pens_only_where_there_are_lines_and_of_formats_that_it_has()
     let help = String::from_utf8(hiddenline(&folder, &["fill", "--help"]).stdout).unwrap();
     assert!(help.contains(".svg; .pdf; .png") && !help.contains("hpgl, gcode"), "{help}");
     assert!(!help.contains(".gcode"), "{help}");
+}
+
+#[test]
+fn letters_that_the_font_does_not_have_are_warned_of_once() {
+    let (_keep, folder) = with_files();
+    let titled = |title: &str| {
+        let surface = ["surface", "x", "--samples", "5", "-o", "x.svg", "--title", title];
+        told(&folder, &surface, 0)
+    };
+    assert!(!titled("Grüße: 3 m² ± 2°").contains("warning"));
+    let stderr = titled("日本日");
+    assert!(stderr.contains("warning: the font has no `日`, `本`: "), "{stderr}");
 }
 
 #[test]

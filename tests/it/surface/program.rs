@@ -209,7 +209,7 @@ fn bad_input_is_told_in_one_line() {
     let folder = with_file("1 2 3\n4 5\n");
     let usage = |arguments: &[&str], message: &str| fails(&folder, arguments, 2, message);
     usage(&["sine(x)"], "column 1: unknown name `sine`; did you mean `sin`?");
-    usage(&["x", "1 +"], "in formula 2, column");
+    usage(&["x", "1 +"], "in formula 2 of 2, column");
     usage(&["x", "--x", "3:1"], "the first number must be the smaller one");
     usage(&["x", "--x", "1:1"], "the first number must be the smaller one");
     usage(&["x", "--samples", "0"], "at least 2 samples are needed");
