@@ -11,8 +11,9 @@ use crate::view::Camera;
 /// Length of ticks and space beside text, as a part of the height of numbers.
 const SPACE: f64 = 0.6;
 
-/// The least space between two texts, as a part of the height of numbers: about a blank.
-const CLEARANCE: f64 = 0.5;
+/// The least space between two texts beside each other, and over each other, as parts of the height
+/// of numbers: more than a blank, and room for descenders.
+const CLEARANCE: DVec2 = DVec2::new(1.0, 0.5);
 
 /// One axis, from `a` to `b` in space.
 pub(super) struct Axis<'a> {
@@ -54,9 +55,9 @@ impl Label {
         Self { line: line.to_owned(), height, center, half_size }
     }
 
-    pub(super) fn is_clear_of(&self, other: &Self, space: f64) -> bool {
+    fn is_clear_of(&self, other: &Self, space: DVec2) -> bool {
         let apart = (self.center - other.center).abs() - self.half_size - other.half_size;
-        apart.max_element() >= space
+        apart.cmpge(space).any()
     }
 
     /// The box around its strokes.

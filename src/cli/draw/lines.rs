@@ -83,21 +83,27 @@ impl LineArgs {
     /// Warnings about what was typed but has no effect.
     pub(super) fn without_effect(&self, plotting: &Plotting) -> Vec<String> {
         let hidden = self.options().hidden;
-        let mut warnings = Vec::new();
-        if hidden != HiddenLines::Dashed && config::is_typed("--dash") {
-            warnings.push("--dash has no effect without --hidden dashed".to_owned());
-        }
-        if hidden == HiddenLines::None && self.hidden_levels.is_some() {
-            if config::is_typed("--hidden-levels") {
-                warnings.push("--hidden-levels has no effect with --hidden none".to_owned());
-            }
-        } else if hidden == HiddenLines::None && plotting.has_hidden_pens() {
-            if config::is_typed("--pen") {
-                warnings.push(
-                    "--pen for hidden lines has no effect without --hidden dashed or solid".into(),
-                );
-            }
-        }
+        let is_none = hidden == HiddenLines::None;
+        let has_levels = self.hidden_levels.is_some();
+        let idle = [
+            (
+                hidden != HiddenLines::Dashed,
+                "--dash",
+                "--dash has no effect without --hidden dashed",
+            ),
+            (
+                is_none && has_levels,
+                "--hidden-levels",
+                "--hidden-levels has no effect with --hidden none",
+            ),
+            (
+                is_none && plotting.has_hidden_pens(),
+                "--pen",
+                "--pen for hidden lines has no effect without --hidden dashed or solid",
+            ),
+        ];
+        let typed = idle.iter().filter(|(is_idle, option, _)| *is_idle && config::is_typed(option));
+        let warnings = typed.map(|(.., warning)| (*warning).to_owned()).collect();
         warnings
     }
 
