@@ -164,7 +164,7 @@ fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
         return Ok(());
     }
     let path = path.display();
-    Err(format!("`{path}` has not the extension .png; a picture is written as PNG only").into())
+    Err(format!("`{path}` does not end in .png; a picture is written as PNG only").into())
 }
 
 /// Does the job; the error is a message for the user.

@@ -108,7 +108,7 @@ fn an_svg_can_be_optimized_in_place() {
 fn a_preview_is_not_written_under_the_name_of_another_format() {
     let (_keep, folder) = with_files();
     for name in ["x.jpg", "x.svg", "x"] {
-        fails(&folder, &["preview", "cube.obj", "-o", name], 2, "has not the extension .png");
+        fails(&folder, &["preview", "cube.obj", "-o", name], 2, "does not end in .png");
         assert!(!folder.join(name).exists());
     }
     let stderr = told(&folder, &["preview", "cube.obj", "--size", "40", "-o", "x.PNG"], 0);

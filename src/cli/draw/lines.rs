@@ -103,8 +103,7 @@ impl LineArgs {
             ),
         ];
         let typed = idle.iter().filter(|(is_idle, option, _)| *is_idle && config::is_typed(option));
-        let warnings = typed.map(|(.., warning)| (*warning).to_owned()).collect();
-        warnings
+        typed.map(|(.., warning)| (*warning).to_owned()).collect()
     }
 
     pub(super) fn options(&self) -> DrawOptions {

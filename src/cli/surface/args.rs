@@ -255,8 +255,8 @@ pub(in crate::cli) fn samples(text: &str) -> Result<(usize, usize), String> {
 /// after too few of them for more.
 fn parametric(text: &str) -> Result<String, String> {
     let is_option = |rest: &str| rest.starts_with(|c: char| c.is_ascii_alphabetic());
-    let is_option = text.strip_prefix("--").is_some_and(is_option)
-        || ["-o", "-q", "-h", "-V"].iter().any(|short| text == *short);
+    let is_option =
+        text.strip_prefix("--").is_some_and(is_option) || ["-o", "-q", "-h", "-V"].contains(&text);
     if is_option {
         return Err("three formulas are needed, for x, y and z".into());
     }
