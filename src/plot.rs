@@ -80,7 +80,8 @@ impl Polylines {
 
     /// Sum of the lengths of all polylines in millimetres.
     pub fn length_mm(&self) -> f64 {
-        self.iter().flat_map(|line| line.windows(2)).map(|s| s[0].distance(s[1])).sum()
+        // The sum of nothing is -0.
+        self.iter().flat_map(|line| line.windows(2)).map(|s| s[0].distance(s[1])).sum::<f64>() + 0.0
     }
 
     /// The polylines in order.

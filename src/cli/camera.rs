@@ -1,7 +1,7 @@
 //! Where the camera stands, by options or by a file.
 
 use std::error::Error;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -126,6 +126,14 @@ impl CameraArgs {
 }
 
 impl ViewSource {
+    /// The file that it is read from.
+    pub(super) fn input(&self) -> Option<PathBuf> {
+        match self {
+            Self::File(path) => Some(path.clone()),
+            Self::Framing(_) => None,
+        }
+    }
+
     /// The camera, for a scene with these least and greatest coordinates.
     pub(super) fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, Box<dyn Error>> {
         match self {
@@ -136,12 +144,13 @@ impl ViewSource {
 }
 
 fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
-    let failed = |error: &dyn Error| format!("{}: {error}", path.display());
-    let text = if is_dash(path) {
-        io::read_to_string(io::stdin().lock())
+    let failed = |error: &dyn Error| format!("--camera {}: {error}", path.display());
+    let mut bytes = Vec::new();
+    if is_dash(path) {
+        io::stdin().lock().read_to_end(&mut bytes).map_err(|error| failed(&error))?;
     } else {
-        std::fs::read_to_string(path)
-    };
-    let text = text.map_err(|error| failed(&error))?;
-    Ok(json::read_camera(&text).map_err(|error| failed(&error))?)
+        bytes = std::fs::read(path).map_err(|error| failed(&error))?;
+    }
+    // What is no text is no JSON either.
+    Ok(json::read_camera(&String::from_utf8_lossy(&bytes)).map_err(|error| failed(&error))?)
 }

@@ -16,7 +16,7 @@ use clap::{ArgMatches, Command};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{machine, output};
+use super::{machine, output, usage};
 
 /// Settings of the folder.
 const PROJECT_FILE: &str = "hiddenline.toml";
@@ -131,7 +131,7 @@ pub(super) enum ConfigError {
     #[error("{origin}: a setting cannot be used: {error}")]
     Unusable { origin: String, error: toml::ser::Error },
     #[error("there is no preset called `{name}`{suggestion}")]
-    NoPreset { name: String, suggestion: String },
+    NoPreset { name: String, suggestion: String, command: String },
 }
 
 /// Settings of one origin, as options with values; flags have none.
@@ -146,11 +146,20 @@ pub(super) fn arguments() -> impl Iterator<Item = OsString> {
     arguments.unwrap_or_else(|| std::env::args_os().skip(1).collect()).into_iter()
 }
 
+/// Whether an option, as in `--page`, was typed rather than set in a file or in the environment.
+pub(super) fn is_typed(option: &str) -> bool {
+    let is_it = |argument: OsString| {
+        let argument = argument.to_string_lossy();
+        argument.strip_prefix(option).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
+    };
+    std::env::args_os().skip(1).any(is_it)
+}
+
 /// Parses what was typed together with the settings. Bad usage ends the program.
 pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn Error>> {
     command.build();
     let typed: Vec<OsString> = std::env::args_os().collect();
-    let matches = command.clone().get_matches_from(&typed);
+    let matches = usage::parse(&command, &typed);
     let Some((name, chosen)) = matches.subcommand().filter(|(name, _)| COMMANDS.contains(name))
     else {
         return Ok(matches);
@@ -165,7 +174,7 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
         options.get_arguments().filter(|arg| is_typed(arg.get_id().as_str())).collect();
     let mut added = Vec::new();
     let mut origins = Vec::new();
-    for layer in layers(preset)? {
+    for layer in layers(preset, name)? {
         let mut used = Vec::new();
         for (name, value) in &layer.options {
             let by_name = |arg: &&clap::Arg| arg.get_long() == Some(name.as_str());
@@ -209,8 +218,8 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
     })
 }
 
-/// Settings by origin, those that go first before the others.
-fn layers(preset: Option<String>) -> Result<Vec<Layer>, ConfigError> {
+/// Settings by origin, those that go first before the others; `command` is for messages.
+fn layers(preset: Option<String>, command: &str) -> Result<Vec<Layer>, ConfigError> {
     let preset = preset.or_else(|| std::env::var("HIDDENLINE_PRESET").ok());
     let preset = preset.filter(|name| !name.is_empty());
     let mut files = Vec::new();
@@ -228,7 +237,7 @@ fn layers(preset: Option<String>) -> Result<Vec<Layer>, ConfigError> {
                 [] => "; no configuration file has any".to_owned(),
                 known => machine::suggestion(&name, known.iter().copied()),
             };
-            return Err(ConfigError::NoPreset { name, suggestion });
+            return Err(ConfigError::NoPreset { name, suggestion, command: command.to_owned() });
         };
         let origin = format!("preset {name} in {}", path.display());
         layers.push(Layer { options: options(settings, &origin)?, origin });
@@ -362,7 +371,7 @@ pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
         }
     }
     let mut seen: Vec<String> = Vec::new();
-    for layer in layers(preset.map(str::to_owned))? {
+    for layer in layers(preset.map(str::to_owned), "config")? {
         let mut names = Vec::new();
         for (name, value) in layer.options.into_iter().filter(|(name, _)| !seen.contains(name)) {
             let value = value.map_or_else(|| "true".to_owned(), |value| format!("{value:?}"));

@@ -14,7 +14,7 @@ use hiddenline::writers::Format;
 use self::lines::LineArgs;
 use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
-use super::output::{OutputArgs, OutputOptions};
+use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
 use super::paper::Run;
 use super::scene::{Subject, count};
@@ -61,6 +61,7 @@ pub(super) struct Job {
     view: ViewSource,
     draw: DrawOptions,
     page: PageOptions,
+    unit_mm: f64,
     pen_width_mm: f64,
     dash: Dash,
     output: OutputOptions,
@@ -71,12 +72,17 @@ impl DrawArgs {
     pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { model, camera, lines, page, output } = self;
         let files = model.files()?;
-        let output = output.options(lines.exact)?;
+        let mut output = output.options(lines.exact)?;
+        output.warnings.extend(lines.without_effect(&output.plotting));
+        let view = camera.view_source();
+        let inputs = files.inputs().chain(view.input()).chain(output.inputs.clone());
+        check_place(output.path.as_deref(), inputs)?;
         let apart_by_kind = output.format == Format::Json || output.plotting.has_pens_by_kind();
         Ok(Job {
             files,
-            view: camera.view_source(),
+            view,
             page: page.options(),
+            unit_mm: page.unit_mm(),
             pen_width_mm: page.pen_width_mm(),
             dash: lines.dash,
             draw: DrawOptions { apart_by_kind, ..lines.options() },
@@ -92,7 +98,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = Some(job.draw.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, !job.draw.exact, &run.progress, &mut run.stats)?;
-    run.notes = notes;
+    run.notes.add(notes);
+    run.unit_mm = job.unit_mm;
     run.progress.stage("drawing");
     // A page that cannot be made is reported when the drawing is placed on it.
     let mm_per_unit = |drawing: &Drawing| {

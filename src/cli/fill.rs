@@ -25,7 +25,7 @@ use hiddenline::writers::NoFills;
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
 use super::input::{Input, InputArgs};
-use super::output::{OutputArgs, OutputOptions};
+use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
 use super::paper::Run;
 use super::progress::Progress;
@@ -50,12 +50,24 @@ Examples:
   hiddenline fill --expr \"sinc(r)\" --x=-9:9 --y=-9:9 --palette 5 -o hat.svg
       A surface z = f(x, y) in five grays.";
 
+// Of the formats that there are, these have filled areas.
+const OUTPUT_HELP: &str = "\
+File to write, its format given by the extension; `-` is standard output
+
+.svg; .pdf; .png";
+const FORMAT_HELP: &str =
+    "Format of the output: svg, pdf or png [default: by extension; svg on standard output]";
+
 /// Fill the visible faces of models with color
 ///
 /// Reads what `draw` reads, looks from where `draw` looks, and writes filled areas for print as SVG, PDF
 /// or PNG, with the lines of `draw` on top on a layer of their own.
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(
+    after_help = EXAMPLES,
+    mut_arg("output", |arg| arg.long_help(OUTPUT_HELP)),
+    mut_arg("format", |arg| arg.help(FORMAT_HELP).hide_possible_values(true)),
+)]
 pub(super) struct FillArgs {
     #[command(flatten)]
     input: InputArgs,
@@ -117,6 +129,14 @@ impl FillArgs {
         if areas.turntable.is_some() && output.path.is_none() {
             return Err("--turntable makes several files; give -o FILE".into());
         }
+        let view = camera.view_source();
+        let inputs = input.inputs().chain(view.input()).chain(output.inputs.clone());
+        let inputs: Vec<PathBuf> = inputs.collect();
+        check_place(output.path.as_deref(), &inputs)?;
+        for number in 1..=areas.turntable.map_or(0, u32::from) {
+            let path = output.path.as_deref().map(|path| numbered(path, number));
+            check_place(path.as_deref(), &inputs)?;
+        }
         let pen_width_mm = page.pen_width_mm();
         let lines =
             DrawOptions { lines: edges.lines, crease_deg: edges.crease, ..Default::default() };
@@ -124,7 +144,7 @@ impl FillArgs {
         fill.check().map_err(|error| error.to_string())?;
         Ok(Job {
             input,
-            view: camera.view_source(),
+            view,
             fill,
             leaf_mm: areas.leaf.unwrap_or(pen_width_mm),
             seam_mm: areas.seam,
@@ -144,7 +164,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = job.edges.map(|edges| edges.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, lines.is_some(), &run.progress, &mut run.stats)?;
-    run.notes = notes;
+    run.notes.add(notes);
     let mut fill = job.fill.clone();
     for path in job.input.models() {
         let found = material_colors(path);
@@ -158,7 +178,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
-    let Run { output, start, progress, stats, mut notes } = run;
+    let Run { output, start, progress, stats, mut notes, unit_mm } = run;
     drop(progress);
     let cameras = (0..n).map(|k| turned(&camera, 360.0 * f64::from(k) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
@@ -167,7 +187,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
-        let run = Run { output, start, progress, stats: stats.clone(), notes };
+        let run = Run { output, start, progress, stats: stats.clone(), notes, unit_mm };
         let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;
     }

@@ -72,6 +72,14 @@ impl Input {
         }
     }
 
+    /// All files that are read.
+    pub(super) fn inputs(&self) -> Box<dyn Iterator<Item = PathBuf> + '_> {
+        match self {
+            Self::Files(files) => Box::new(files.inputs()),
+            Self::Sheets(sheets) => Box::new(sheets.file().into_iter()),
+        }
+    }
+
     /// The models' files.
     pub(super) fn models(&self) -> &[PathBuf] {
         match self {

@@ -50,6 +50,13 @@ pub(super) enum MachineError {
     Gcode(#[from] gcode::Error),
 }
 
+impl MachineError {
+    /// Whether the name that was typed is wrong, rather than what it stands for.
+    pub(super) fn is_usage(&self) -> bool {
+        matches!(self, Self::Unknown { .. } | Self::OtherFormat { .. })
+    }
+}
+
 impl Target {
     /// Finds the machine called `name`, or the usual one for `format`.
     pub(super) fn new(

@@ -18,6 +18,11 @@ pub(super) fn plain(message: impl Display) {
     let _ = writeln!(anstream::stderr(), "{message}");
 }
 
+/// How many of something there are, in words: `1 face`, `2 faces`.
+pub(super) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
 fn labeled(style: Style, label: &str, message: &str) {
     let _ = writeln!(anstream::stderr(), "{style}{label}:{style:#} {message}");
 }

@@ -4,6 +4,7 @@ mod camera;
 mod config;
 mod draw;
 mod fill;
+mod formulas;
 mod input;
 mod machine;
 mod messages;
@@ -19,16 +20,17 @@ mod progress;
 mod scene;
 mod source;
 mod surface;
+mod usage;
 mod values;
 
 use std::error::Error;
 use std::io;
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{FromArgMatches, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use self::config::ConfigError;
 use self::draw::DrawArgs;
 use self::fill::FillArgs;
 use self::optimize::OptimizeArgs;
@@ -114,15 +116,20 @@ impl From<&str> for Refused {
 
 impl From<machine::MachineError> for Refused {
     fn from(error: machine::MachineError) -> Self {
-        Self::Failed(error.into())
+        if error.is_usage() { Self::Usage(error.to_string()) } else { Self::Failed(error.into()) }
     }
 }
 
 /// Runs the command that was typed.
 pub(crate) fn run() -> ExitCode {
-    let typed = match config::with_settings(Cli::command()) {
+    let typed = match config::with_settings(usage::command()) {
         Ok(matches) => Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()),
-        Err(error) => return failed(error.as_ref()),
+        Err(error) => match error.downcast_ref() {
+            Some(no_preset @ ConfigError::NoPreset { command, .. }) => {
+                usage::exit_with(command, &no_preset.to_string())
+            }
+            _ => return failed(error.as_ref()),
+        },
     };
     match typed.color {
         Color::Auto => {}
@@ -140,7 +147,7 @@ pub(crate) fn run() -> ExitCode {
         }
         Command::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "hiddenline", &mut script);
+            clap_complete::generate(shell, &mut usage::command(), "hiddenline", &mut script);
             output::write_to_stdout(|out| out.write_all(&script)).map_err(Into::into)
         }
         Command::Man { command } => man(command.as_deref()),
@@ -165,21 +172,13 @@ fn started<J>(
 ) -> Result<(), Box<dyn Error>> {
     match job {
         Ok(job) => run(&job),
-        Err(Refused::Usage(message)) => bad_usage(name, message),
+        Err(Refused::Usage(message)) => usage::exit_with(name, &message),
         Err(Refused::Failed(error)) => Err(error),
     }
 }
 
-/// Says what is wrong with the arguments of a command, and ends the program as clap does.
-fn bad_usage(name: &str, message: String) -> ! {
-    let mut command = Cli::command();
-    command.build();
-    let mut command = command.find_subcommand(name).cloned().unwrap_or_else(Cli::command);
-    command.error(ErrorKind::ValueValidation, message).exit()
-}
-
 fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
-    let mut command = Cli::command();
+    let mut command = usage::command();
     command.build();
     let chosen = match name {
         None => command,

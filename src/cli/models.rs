@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::mesh::{Mesh, Repairs};
-use hiddenline::read::{ModelFormat, read_file};
+use hiddenline::read::{ModelFormat, material_files, read_file};
 
+use super::messages::counted;
 use super::paper::Notes;
 use super::paths::{is_dash, title};
 use super::values;
@@ -116,13 +117,19 @@ impl ModelFiles {
             return Err("no face is left; give a smaller --weld".into());
         }
         notes.summary = format!(
-            "{}: {} vertices, {} faces{}",
+            "{}: {}, {}{}",
             self.title(),
-            mesh.positions().len(),
-            mesh.n_faces(),
+            counted(mesh.positions().len(), "vertex", "vertices"),
+            counted(mesh.n_faces(), "face", "faces"),
             described(repairs)
         );
         Ok((mesh, notes))
+    }
+
+    /// All files that are read: the models, and those that they name.
+    pub(super) fn inputs(&self) -> impl Iterator<Item = PathBuf> {
+        let named = self.models.iter().flat_map(|path| material_files(path));
+        self.models.iter().cloned().chain(named)
     }
 
     /// The names of the models, without folders.
@@ -162,13 +169,13 @@ impl InputFormat {
 
 fn described(repairs: Repairs) -> String {
     [
-        (repairs.welded_vertices, "equal vertices made one"),
-        (repairs.unused_vertices, "unused vertices left out"),
-        (repairs.degenerate_faces, "degenerate faces left out"),
-        (repairs.repeated_corners, "repeated corners left out"),
+        (repairs.welded_vertices, "equal vertex merged", "equal vertices merged"),
+        (repairs.unused_vertices, "unused vertex left out", "unused vertices left out"),
+        (repairs.degenerate_faces, "degenerate face left out", "degenerate faces left out"),
+        (repairs.repeated_corners, "repeated corner left out", "repeated corners left out"),
     ]
     .iter()
-    .filter(|(count, _)| *count > 0)
-    .map(|(count, what)| format!(", {count} {what}"))
+    .filter(|(count, ..)| *count > 0)
+    .map(|&(count, one, many)| format!(", {}", counted(count, one, many)))
     .collect()
 }

@@ -11,7 +11,8 @@ use hiddenline::page::Drawn;
 use hiddenline::stats::timed;
 use hiddenline::writers::Format;
 
-use super::output::{OutputArgs, OutputOptions};
+use super::messages::counted;
+use super::output::{OutputArgs, OutputOptions, check_place};
 use super::paper::{Notes, Run};
 use super::paths::{is_dash, title};
 use super::{Refused, config, source, values};
@@ -29,7 +30,7 @@ Examples:
 ///
 /// Reads paths, lines, polygons, circles and the like with transforms, units and layers; curves
 /// become chords. Each Inkscape layer and each color in it is a pen. Ink that lies on other ink of
-/// its pen is drawn once.
+/// its pen is drawn once. The output may be the file that is read: it is replaced when all is done.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct OptimizeArgs {
@@ -66,6 +67,11 @@ impl OptimizeArgs {
             return Err("an SVG has its pens already; --pen can only be given for `visible`, \
                         which puts all lines on one"
                 .into());
+        }
+        check_place(output.path.as_deref(), &output.inputs)?;
+        // An SVG may be replaced by itself in a better order: it is read before, and as a whole.
+        if output.format != Format::Svg {
+            check_place(output.path.as_deref(), [&self.file])?;
         }
         Ok(Job {
             file: self.file,
@@ -111,10 +117,14 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     plot.source = source::source(config::arguments());
     run.stats.strokes = plot.layers.iter().map(|layer| layer.lines.len()).sum();
     run.stats.points = plot.layers.iter().map(|layer| layer.lines.n_points()).sum();
-    run.notes = Notes {
+    run.notes.add(Notes {
         warnings: read.warnings.into_iter().collect(),
-        summary: format!("{name}: {} strokes, {} points", run.stats.strokes, run.stats.points),
-    };
+        summary: format!(
+            "{name}: {}, {}",
+            counted(run.stats.strokes, "stroke", "strokes"),
+            counted(run.stats.points, "point", "points")
+        ),
+    });
     let paper = format!("{} x {} mm", tenths(plot.width_mm), tenths(plot.height_mm));
     let usual = Options { shortest_mm: job.shortest_mm, ..Options::default() };
     run.plot(&paper, plot, &usual)

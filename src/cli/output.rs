@@ -1,6 +1,7 @@
 //! The output: where the drawing goes, in what format, and what is told on the way.
 
 mod file;
+mod place;
 
 use std::path::{Path, PathBuf};
 
@@ -10,10 +11,11 @@ use hiddenline::writers::png::{Marks, Resolution};
 use hiddenline::writers::svg::StrokeElement;
 
 pub(super) use self::file::{write_to_file, write_to_stdout};
+pub(super) use self::place::check_place;
 use super::machine::Target;
 use super::paths::is_dash;
 use super::plotting::{PlotArgs, Plotting};
-use super::{Refused, values};
+use super::{Refused, config, values};
 
 #[derive(Args)]
 #[command(next_help_heading = "Output")]
@@ -101,6 +103,10 @@ pub(super) struct OutputOptions {
     pub(super) strict: bool,
     pub(super) plotting: Plotting,
     pub(super) target: Target,
+    /// Files that are read for the output's sake.
+    pub(super) inputs: Vec<PathBuf>,
+    /// About options that have no effect.
+    pub(super) warnings: Vec<String>,
 }
 
 impl OutputArgs {
@@ -112,6 +118,8 @@ impl OutputArgs {
         let format = output_format(self.format, path.as_deref())?;
         let target = self.plotting.target(format)?;
         Ok(OutputOptions {
+            inputs: self.plotting.inputs(),
+            warnings: without_effect(format),
             plotting: self.plotting.options(exact)?,
             target,
             format,
@@ -136,6 +144,19 @@ impl OutputArgs {
             strict: self.strict,
         })
     }
+}
+
+/// Warnings about what was typed for another format than that of the output.
+fn without_effect(format: Format) -> Vec<String> {
+    let for_png = ["--dpi", "--png-width", "--png-show"].map(|option| (option, Format::Png));
+    let for_svg = [("--svg-element", Format::Svg)];
+    let other = |(option, of): &(&str, Format)| *of != format && config::is_typed(option);
+    let options = for_png.into_iter().chain(for_svg).filter(other);
+    let warning = |(option, of): (&str, Format)| {
+        let (format, of) = (format.name(), of.name());
+        format!("{option} has no effect on {format}; it is for {of}")
+    };
+    options.map(warning).collect()
 }
 
 fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Format, String> {

@@ -55,13 +55,17 @@ impl PageArgs {
         self.pen_width
     }
 
-    pub(super) fn options(&self) -> PageOptions {
-        let unit_mm = match self.unit {
+    /// Millimetres of a model unit, for --drawing-scale.
+    pub(super) fn unit_mm(&self) -> f64 {
+        match self.unit {
             LengthUnit::Mm => 1.0,
             LengthUnit::Cm => 10.0,
             LengthUnit::M => 1000.0,
             LengthUnit::In => 25.4,
-        };
+        }
+    }
+
+    pub(super) fn options(&self) -> PageOptions {
         PageOptions {
             paper: self.page,
             orientation: match (self.landscape, self.portrait) {
@@ -71,7 +75,7 @@ impl PageArgs {
             },
             margin_mm: self.margin,
             placement: match (self.drawing_scale, self.fit_fov) {
-                (Some(scale), _) => Placement::Scale { mm_per_unit: scale * unit_mm },
+                (Some(scale), _) => Placement::Scale { mm_per_unit: scale * self.unit_mm() },
                 (None, true) => Placement::FieldOfView,
                 (None, false) => Placement::Fit,
             },

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use hiddenline::optimize::{Effort, Options};
-use hiddenline::page::{Page, PageOptions, PlotOptions};
+use hiddenline::page::{Page, PageOptions, Placement, PlotOptions};
 use hiddenline::plot::Plot;
 use hiddenline::stats::{PenWork, PlotStats, Stats, peak_bytes, timed};
 use hiddenline::strokes::Drawing;
@@ -15,6 +15,7 @@ use hiddenline::writers::png::PngError;
 use hiddenline::writers::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
 use super::machine::Device;
+use super::messages::counted;
 use super::output::OutputOptions;
 use super::plotting::Finished;
 use super::progress::Progress;
@@ -27,6 +28,14 @@ pub(super) struct Notes {
     pub(super) summary: String,
 }
 
+impl Notes {
+    /// Adds what else there is to tell.
+    pub(super) fn add(&mut self, other: Self) {
+        self.warnings.extend(other.warnings);
+        self.summary.push_str(&other.summary);
+    }
+}
+
 /// A run of a command, from its start to what is told at the end.
 pub(super) struct Run<'a> {
     pub(super) output: &'a OutputOptions,
@@ -34,6 +43,8 @@ pub(super) struct Run<'a> {
     pub(super) progress: Progress,
     pub(super) stats: Stats,
     pub(super) notes: Notes,
+    /// Millimetres of a model unit, for scales in messages.
+    pub(super) unit_mm: f64,
 }
 
 /// Refuses to send a picture to a terminal.
@@ -59,7 +70,8 @@ impl<'a> Run<'a> {
         let start = Instant::now();
         let stats = start_threads(output.threads)?;
         let progress = Progress::new(output.quiet);
-        Ok(Self { output, start, progress, stats, notes: Notes::default() })
+        let notes = Notes { warnings: output.warnings.clone(), ..Notes::default() };
+        Ok(Self { output, start, progress, stats, notes, unit_mm: 1.0 })
     }
 
     /// Puts `drawing` on paper and ends the run.
@@ -67,7 +79,7 @@ impl<'a> Run<'a> {
         mut self,
         drawing: &Drawing,
         camera: &Camera,
-        page: &PageOptions,
+        options: &PageOptions,
         plot: PlotOptions,
         usual: &Options,
     ) -> Result<(), Box<dyn Error>> {
@@ -75,11 +87,14 @@ impl<'a> Run<'a> {
         self.progress.stage("placing");
         let mut seconds = self.stats.seconds;
         let (page, placed) = timed(&mut seconds.write, || -> Result<_, Box<dyn Error>> {
-            let page = Page::new(drawing, camera, page)?;
+            let page = Page::new(drawing, camera, options)?;
             Ok((page, page.plot(drawing, plot)))
         })?;
         if placed.cropped && !is_json {
-            self.notes.warnings.push("lines were cut off at the margins".into());
+            let fitting = largest_scale(drawing, camera, options, self.unit_mm);
+            let hint = fitting.map(|scale| format!("; the largest scale that fits is {scale}"));
+            let hint = hint.unwrap_or_default();
+            self.notes.warnings.push(format!("lines were cut off at the margins{hint}"));
         }
         self.stats.seconds = seconds;
         if is_json {
@@ -177,7 +192,9 @@ impl<'a> Run<'a> {
         stats.peak_bytes = peak_bytes();
         if !output.quiet {
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
-            messages::plain(&self.notes.summary);
+            if !self.notes.summary.is_empty() {
+                messages::plain(&self.notes.summary);
+            }
             let name = path.map_or("<stdout>".into(), Path::to_string_lossy);
             messages::plain(format_args!("{name}  {paper}{}", described(plot, done.as_ref())));
             if output.verbose {
@@ -205,18 +222,21 @@ fn described(plot: &Plot, done: Option<&Done>) -> String {
         .iter()
         .map(|layer| {
             if !layer.fills.is_empty() {
-                return format!("  {} {} areas", layer.name, layer.fills.len());
+                let areas = counted(layer.fills.len(), "area", "areas");
+                return format!("  {} {areas}", layer.name);
             }
             let meters = layer.lines.length_mm() / 1000.0;
-            format!("  {} {} strokes {meters:.1} m", layer.name, layer.lines.len())
+            let strokes = counted(layer.lines.len(), "stroke", "strokes");
+            format!("  {} {strokes} {meters:.1} m", layer.name)
         })
         .collect();
-    if let Some(Done { stats: PlotStats { before, after }, .. }) = done {
+    let has_lines = plot.layers.iter().any(|layer| !layer.lines.is_empty());
+    if let Some(Done { stats: PlotStats { before, after }, .. }) = done.filter(|_| has_lines) {
         text.push_str(&format!(", {}", brief(after)));
         if before != after {
             text.push_str(&format!(
-                "  (before: {} strokes {:.1} m, {})",
-                before.strokes,
+                "  (before: {} {:.1} m, {})",
+                counted(before.strokes, "stroke", "strokes"),
                 before.down_m,
                 brief(before)
             ));
@@ -226,8 +246,47 @@ fn described(plot: &Plot, done: Option<&Done>) -> String {
 }
 
 fn brief(work: &PenWork) -> String {
-    let digits = if work.minutes < 10.0 { 1 } else { 0 };
-    format!("pen-up {:.2} m, {} lifts, about {:.digits$} min", work.up_m, work.lifts, work.minutes)
+    let lifts = counted(work.lifts, "lift", "lifts");
+    format!("pen-up {:.2} m, {lifts}, about {}", work.up_m, duration(work.minutes))
+}
+
+/// Minutes as people say them: `2.5 min`, `45 min`, `2 h 23 min`.
+fn duration(minutes: f64) -> String {
+    let whole = minutes.round();
+    if minutes < 9.95 {
+        format!("{minutes:.1} min")
+    } else if whole < 60.0 {
+        format!("{whole} min")
+    } else {
+        format!("{} h {} min", (whole / 60.0).floor(), whole % 60.0)
+    }
+}
+
+/// The largest scale at which nothing of a drawing is cut off, as it is typed, if a scale was given.
+fn largest_scale(
+    drawing: &Drawing,
+    camera: &Camera,
+    options: &PageOptions,
+    unit_mm: f64,
+) -> Option<String> {
+    let Placement::Scale { mm_per_unit } = options.placement else { return None };
+    let at = |placement| {
+        let page = Page::new(drawing, camera, &PageOptions { placement, ..*options });
+        page.ok().map(|page| page.mm_per_image_unit())
+    };
+    let scale = at(Placement::Fit)? / at(options.placement)? * mm_per_unit / unit_mm;
+    // Rounded down to three digits, so that it does fit.
+    let rounded = |x: f64, up: bool| {
+        let power = libm::pow(10.0, libm::floor(libm::log10(x)) - 2.0);
+        let digits = if up { (x / power).ceil() } else { (x / power).floor() };
+        // Dividing by a whole number rounds once.
+        if power < 1.0 { digits / libm::round(1.0 / power) } else { digits * power }
+    };
+    if !(scale > 0.0 && scale.is_finite()) {
+        return None;
+    }
+    let (large, small) = (rounded(scale, false), rounded(1.0 / scale, true));
+    Some(if scale >= 1.0 { format!("{large}:1") } else { format!("1:{small}") })
 }
 
 /// What `--verbose` tells.
@@ -235,8 +294,12 @@ fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
     let seconds = &stats.seconds;
     if !stats.engine.is_empty() {
         messages::plain(format_args!(
-            "engine {}, {} threads, {} triangles, {} of {} edges drawn",
-            stats.engine, stats.threads, stats.triangles, stats.drawn_edges, stats.edges
+            "engine {}, {}, {}, {} of {} edges drawn",
+            stats.engine,
+            counted(stats.threads, "thread", "threads"),
+            counted(stats.triangles, "triangle", "triangles"),
+            stats.drawn_edges,
+            stats.edges
         ));
     }
     messages::plain(format_args!(

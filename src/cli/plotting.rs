@@ -87,6 +87,11 @@ impl PlotArgs {
         Target::new(format, self.machine.as_deref(), self.gcode_profile.as_deref())
     }
 
+    /// Files that these options name.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        self.gcode_profile.iter().cloned().collect()
+    }
+
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn options(self, exact: bool) -> Result<Plotting, String> {
         for (i, pen) in self.pens.iter().enumerate() {
@@ -126,6 +131,11 @@ impl Plotting {
     pub(super) fn has_pens_by_kind(&self) -> bool {
         let by_kind = |drawn| matches!(drawn, Drawn::Kind(_) | Drawn::HiddenLevel(_));
         self.pens.iter().any(|pen| by_kind(pen.drawn))
+    }
+
+    /// Whether hidden lines have pens.
+    pub(super) fn has_hidden_pens(&self) -> bool {
+        self.pens.iter().any(|pen| pen.drawn.is_hidden())
     }
 
     /// The pens of a drawing; also one for the outline, when other lines are drawn too, and one for

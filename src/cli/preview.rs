@@ -4,7 +4,7 @@ mod picture;
 
 use std::error::Error;
 use std::io::{self, IsTerminal};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -12,10 +12,12 @@ use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::preview::{self, Options};
 use hiddenline::stats::peak_bytes;
+use hiddenline::writers::Format;
 
 use self::picture::PictureArgs;
 use super::camera::{CameraArgs, ViewSource};
 use super::input::{Input, InputArgs};
+use super::output::check_place;
 use super::paper::start_threads;
 use super::paths::is_dash;
 use super::progress::Progress;
@@ -70,6 +72,9 @@ pub(super) struct PreviewArgs {
     /// Print nothing but errors
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
+    /// Take the settings called NAME in the configuration files
+    #[arg(long, value_name = "NAME", help_heading = "Output")]
+    preset: Option<String>,
 }
 
 /// What is to be done.
@@ -89,20 +94,35 @@ pub(super) struct Job {
 impl PreviewArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
-        let Self { input, camera, picture, output, threads, stats, quiet } = self;
+        let Self { input, camera, picture, output, threads, stats, quiet, preset: _ } = self;
         let input = input.input(DEFAULT_SAMPLES)?;
+        let path = output.filter(|path| !is_dash(path));
+        let view = camera.view_source();
+        check_place(path.as_deref(), input.inputs().chain(view.input()))?;
+        check_picture(path.as_deref())?;
         Ok(Job {
             input,
-            view: camera.view_source(),
+            view,
             options: picture.options()?,
             edges: picture.edges.then_some(picture.lines),
-            path: output.filter(|path| !is_dash(path)),
+            path,
             threads: threads.map(usize::from),
             engine: picture.engine_name(),
             stats,
             quiet,
         })
     }
+}
+
+/// Refuses the name of another kind of file than a PNG; what is no file may be called anything.
+fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
+    let Some(path) = path else { return Ok(()) };
+    let is_device = path.metadata().is_ok_and(|found| !found.is_file());
+    if is_device || Format::from_path(path) == Some(Format::Png) {
+        return Ok(());
+    }
+    let path = path.display();
+    Err(format!("`{path}` does not end in .png; a picture is written as PNG only").into())
 }
 
 /// Does the job; the error is a message for the user.
@@ -139,9 +159,11 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     if !job.quiet {
         notes.warnings.iter().for_each(|warning| messages::warning(warning));
         let (width, height) = job.options.size;
+        messages::plain(&notes.summary);
+        let name = job.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
         messages::plain(format_args!(
-            "{}; {width} x {height} pixels by {}, {:.2} s",
-            notes.summary, job.engine, seconds.total
+            "{name}  {width} x {height} pixels by {}, {:.2} s",
+            job.engine, seconds.total
         ));
     }
     if job.stats {

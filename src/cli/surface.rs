@@ -7,9 +7,9 @@ mod smoothness;
 
 use std::error::Error;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
-use hiddenline::dressing::{Titles, dress};
+use hiddenline::dressing::{Titles, dress, missing};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
@@ -62,6 +62,7 @@ pub(super) struct Job {
     /// `None` for no axes.
     titles: Option<Titles>,
     page: PageOptions,
+    unit_mm: f64,
     pen_width_mm: f64,
     output: OutputOptions,
 }
@@ -69,6 +70,7 @@ pub(super) struct Job {
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
+    run.unit_mm = job.unit_mm;
     let stats = &mut run.stats;
     run.progress.stage("sampling");
     let Sampled { surface, factor, camera, refined, deviation_mm } =
@@ -80,6 +82,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         ));
     }
     let bounds = surface.bounds();
+    run.notes.warnings.extend(without_levels(job, bounds, factor)?);
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     run.progress.stage("drawing");
     let grid = surface.only_grid(job, &camera)?;
@@ -90,6 +93,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.notes.warnings.extend(crowding(job, &drawing, &camera));
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         dress(&mut drawing, bounds, factor, &camera, titles);
+        run.notes.warnings.extend(unknown_letters(titles));
     }
     let usual = joining(&drawing, grid.is_some(), &camera);
     stats.strokes = drawing.len();
@@ -117,6 +121,49 @@ fn crowding(job: &Job, drawing: &Drawing, camera: &Camera) -> Option<String> {
         let every = (job.lines.every as f64 * covered / WELL_COVERED).ceil();
         format!("lines flow into each other; --every {every} draws fewer")
     })
+}
+
+/// Says which letters of the titles cannot be drawn.
+fn unknown_letters(titles: &Titles) -> Option<String> {
+    let letters = missing(&[titles.axes.join(""), titles.drawing.clone()].concat());
+    let letters: Vec<String> = letters.iter().map(|letter| format!("`{letter}`")).collect();
+    let letters = letters.join(", ");
+    (!letters.is_empty()).then(|| format!("the font has no {letters}: drawn as question marks"))
+}
+
+/// Says so if there are no level curves; an error if nothing else is to be drawn.
+fn without_levels(
+    job: &Job,
+    (low, high): (DVec3, DVec3),
+    factor: f64,
+) -> Result<Option<String>, String> {
+    let Some(levels) = &job.levels else { return Ok(None) };
+    let (one, other) = match factor {
+        0.0 => (0.0, 0.0),
+        _ => (low.z / factor + 0.0, high.z / factor + 0.0),
+    };
+    let range = one.min(other)..=one.max(other);
+    let (least, most) = (brief(*range.start()), brief(*range.end()));
+    let message = match levels {
+        _ if low.z == high.z => {
+            format!("the surface is level, {least} high everywhere: it has no level curves")
+        }
+        Levels::At(heights) if heights.iter().all(|z| !range.contains(z)) => {
+            format!("the surface has heights from {least} to {most}: none of --levels is there")
+        }
+        _ => return Ok(None),
+    };
+    let draws_more = job.lines.along_x || job.lines.along_y;
+    if draws_more || job.folds || job.border || job.all_edges {
+        Ok(Some(message))
+    } else {
+        Err(format!("{message}; --lines both draws grid lines"))
+    }
+}
+
+/// A number with at most six digits that count.
+fn brief(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// What to do with the strokes. Those of a grid run along its lines already, in a short way from

@@ -9,6 +9,8 @@ use hiddenline::page::{Dash, Drawn, parse_length_mm};
 use hiddenline::preview::LARGEST_SIDE;
 use hiddenline::strokes::StrokeKind;
 
+use super::machine;
+
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse::<f64>().map_err(|_| "not a number".to_owned())?;
@@ -20,9 +22,9 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("must be above 0".into()) })
 }
 
-/// A finite number, 0 or above.
+/// A finite number, 0 or more.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
-    number(text).and_then(|x| if x >= 0.0 { Ok(x) } else { Err("must be 0 or above".into()) })
+    number(text).and_then(|x| if x >= 0.0 { Ok(x) } else { Err("must be 0 or more".into()) })
 }
 
 /// Degrees from 0 to 180.
@@ -44,15 +46,22 @@ pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// A length in millimetres, 0 or above.
+/// Three numbers with commas between them that are not all zero.
+pub(super) fn direction(text: &str) -> Result<DVec3, String> {
+    vector(text)
+        .and_then(|v| if v == DVec3::ZERO { Err("0,0,0 is no direction".into()) } else { Ok(v) })
+}
+
+/// A length in millimetres, 0 or more.
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let length = parse_length_mm(text).map_err(|error| error.to_string())?;
-    if length >= 0.0 { Ok(length) } else { Err("must be 0 or above".into()) }
+    if length >= 0.0 { Ok(length) } else { Err("must be 0 or more".into()) }
 }
 
 /// A length in millimetres, above 0.
 pub(super) fn positive_length(text: &str) -> Result<f64, String> {
-    length(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("must be above 0".into()) })
+    let length = parse_length_mm(text).map_err(|error| error.to_string())?;
+    if length > 0.0 { Ok(length) } else { Err("must be above 0".into()) }
 }
 
 /// A length in millimetres, above 0, or in meters as in `10m`.
@@ -82,6 +91,19 @@ pub(super) fn scale(text: &str) -> Result<f64, String> {
     }
 }
 
+/// What [`lines`] knows.
+const KINDS_OF_LINE: [&str; 9] = [
+    "silhouette",
+    "crease",
+    "boundary",
+    "nonmanifold",
+    "intersection",
+    "material",
+    "mesh",
+    "outline",
+    "all",
+];
+
 /// Kinds of line with commas between them.
 pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
     text.split(',').try_fold(LineSelection::NONE, |lines, name| {
@@ -96,10 +118,8 @@ pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
             "mesh" => lines.with(StrokeKind::Mesh),
             "outline" => lines.with_outline(),
             other => {
-                return Err(format!(
-                    "`{other}` is no kind of line; there are silhouette, crease, boundary, \
-                     nonmanifold, intersection, material, mesh, outline, and all"
-                ));
+                let hint = machine::suggestion(other, KINDS_OF_LINE.into_iter());
+                return Err(format!("`{other}` is no kind of line{hint}"));
             }
         })
     })
@@ -175,7 +195,7 @@ fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
     all().find(|drawn| drawn.name() == name).ok_or_else(|| {
         let names: Vec<_> = all().map(Drawn::name).collect();
         let names = names.iter().map(AsRef::as_ref);
-        format!("no pen draws `{name}`{}", super::machine::suggestion(name, names))
+        format!("no pen draws `{name}`{}", machine::suggestion(name, names))
     })
 }
 

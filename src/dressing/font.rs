@@ -12,6 +12,8 @@
 
 use glam::{DVec2, dvec2};
 
+use super::letters::{Accent, combining, split};
+
 /// From the baseline to the top of capitals, in units of the glyphs' grid.
 const CAPITAL: f64 = 6.0;
 
@@ -19,6 +21,15 @@ const CAPITAL: f64 = 6.0;
 const GAP: f64 = 1.6;
 
 const BASELINE: f64 = 2.0;
+
+/// From the baseline to the top of small letters, in units of the glyphs' grid.
+const SMALL: f64 = 4.0;
+
+/// From the top of a letter to the accent above it.
+const ABOVE: f64 = 0.6;
+
+/// Width that letters with an accent have at least.
+const WIDEST_ACCENT: f64 = 2.6;
 
 /// A character, its width and its strokes.
 type Glyph = (char, u8, &'static str);
@@ -52,33 +63,141 @@ const GLYPHS: &[Glyph] = &[
     ('t', 2, "08031222 0626"), ('u', 3, "0603122233 3632"), ('v', 4, "062246"), ('w', 4, "0612243246"),
     ('x', 3, "0632 0236"), ('y', 3, "0622 3610"), ('z', 3, "06360232"), ('{', 2, "28181605141222"),
     ('|', 0, "0801"), ('}', 2, "08181625141202"), ('~', 4, "05162434 3445"),
+    ('Æ', 4, "022848 282242 1545"), ('Ð', 4, "02082846442202 0525"), ('Ø', 4, "180703123243473818 0248"),
+    ('Þ', 4, "0802 073746453404"), ('ß', 3, "0207182837362534332212"), ('æ', 4, "061625231203142444453625 233242"),
+    ('ð', 3, "3526160503122233352718 1738"), ('ø', 3, "160503122233352616 0236"), ('þ', 3, "0800 0516263533221203"),
+    ('Ł', 3, "080232 0426"), ('ł', 1, "080312 0415"), ('ı', 0, "0602"),
+    ('¡', 0, "0807 0602"), ('¿', 3, "33221203041516 1718"), ('«', 3, "160514 362534"), ('»', 3, "061504 263524"),
+    ('£', 4, "4738281712 0242 0535"), ('€', 4, "4738281713223243 0636 0434"), ('·', 0, "0504"),
+    ('°', 2, "1827160718"), ('±', 4, "2428 0646 0242"), ('×', 4, "1337 1733"), ('÷', 4, "0545 2726 2423"),
+    ('¹', 1, "071815"), ('²', 2, "0718270525"), ('³', 2, "082817261505"), ('µ', 3, "0600 03122233 3632"),
+    ('π', 4, "0646 1612 3632"), ('θ', 3, "180703122233372818 0535"),
 ];
 
 /// The strokes of a line of text, `height` being that of its capitals, from (0, 0) at the left end
-/// of the baseline to the right and upwards; and its width. Characters that are not ASCII, and
-/// minus signs but for these, become a question mark.
+/// of the baseline to the right and upwards; and its width. Letters with accents are put together;
+/// characters that the font does not have, see [`missing`], become a question mark.
 pub fn text(line: &str, height: f64) -> (Vec<Vec<DVec2>>, f64) {
     let unit = height / CAPITAL;
     let mut strokes = Vec::new();
     let mut at = 0.0;
-    for character in line.chars() {
-        let character = match character {
-            ' ' => {
-                at += 3.0 + GAP;
-                continue;
-            }
-            '−' | '–' => '-',
-            other => other,
-        };
-        let glyph = |wanted: char| GLYPHS.iter().find(|(character, ..)| *character == wanted);
+    for (character, accent) in letters(line) {
+        if character == ' ' {
+            at += 3.0 + GAP;
+            continue;
+        }
         let Some((_, width, drawing)) = glyph(character).or_else(|| glyph('?')) else { continue };
-        for stroke in drawing.split(' ').filter(|stroke| stroke.len() >= 4) {
+        let mut parts: Vec<&str> = drawing.split(' ').filter(|part| part.len() >= 4).collect();
+        let mut room = f64::from(*width);
+        if let Some(accent) = accent {
+            room = room.max(WIDEST_ACCENT);
+            if matches!(character, 'i' | 'j') && !accent.is_below() {
+                // The mark stands in place of the dot.
+                parts.truncate(1);
+            }
+        }
+        let left = at + (room - f64::from(*width)) / 2.0;
+        for part in parts {
             let digit = |byte: u8| f64::from(byte.saturating_sub(b'0'));
-            let points = stroke.as_bytes().chunks_exact(2);
-            let place = |p: &[u8]| dvec2(at + digit(p[0]), digit(p[1]) - BASELINE) * unit;
+            let points = part.as_bytes().chunks_exact(2);
+            let place = |p: &[u8]| dvec2(left + digit(p[0]), digit(p[1]) - BASELINE) * unit;
             strokes.push(points.map(place).collect());
         }
-        at += f64::from(*width) + GAP;
+        if let Some(accent) = accent {
+            let top = if character.is_uppercase() { CAPITAL } else { SMALL } + ABOVE;
+            let from = dvec2(at + room / 2.0, if accent.is_below() { 0.0 } else { top });
+            let place = |&(x, y): &(f64, f64)| (from + dvec2(x, y)) * unit;
+            strokes.extend(accent.strokes().iter().map(|s| s.iter().map(place).collect()));
+        }
+        at += room + GAP;
     }
     (strokes, (at - GAP).max(0.0) * unit)
+}
+
+/// The characters of a line that the font does not have, each once, in their order.
+pub fn missing(line: &str) -> Vec<char> {
+    let mut missing: Vec<char> = Vec::new();
+    for (character, _) in letters(line) {
+        if character != ' ' && glyph(character).is_none() && !missing.contains(&character) {
+            missing.push(character);
+        }
+    }
+    missing
+}
+
+fn glyph(wanted: char) -> Option<&'static Glyph> {
+    GLYPHS.iter().find(|(character, ..)| *character == wanted)
+}
+
+/// The characters without their accents, which are beside them, and in the spelling of the font.
+fn letters(line: &str) -> impl Iterator<Item = (char, Option<Accent>)> {
+    let mut characters = line.chars().peekable();
+    std::iter::from_fn(move || {
+        let character = characters.next()?;
+        let (letter, accent) = match characters.peek().and_then(|mark| combining(*mark)) {
+            Some(accent) => {
+                characters.next();
+                (character, Some(accent))
+            }
+            None => match split(character) {
+                Some((letter, accent)) => (letter, Some(accent)),
+                None => (character, None),
+            },
+        };
+        let letter = match letter {
+            '−' | '–' | '—' | '‐' => '-',
+            '‘' | '’' | '´' => '\'',
+            '“' | '”' | '„' => '"',
+            'μ' => 'µ',
+            blank if blank.is_whitespace() => ' ',
+            other => other,
+        };
+        Some((letter, accent))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_printable_character_has_strokes_of_its_own() {
+        let glyphs: Vec<_> = ('!'..='~').map(|c| text(&c.to_string(), 6.0).0).collect();
+        for (k, glyph) in glyphs.iter().enumerate() {
+            assert!(
+                !glyph.is_empty() && !glyphs[..k].contains(glyph),
+                "{:?}",
+                char::from(33 + k as u8)
+            );
+            let points = glyph.iter().flatten();
+            assert!(points.clone().all(|p| p.x >= 0.0 && p.x <= 4.0 && p.y >= -2.0 && p.y <= 7.0));
+        }
+    }
+
+    #[test]
+    fn western_european_letters_have_strokes_of_their_own() {
+        let line = "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÐÑÒÓÔÕÖ×ØÙÚÛÜÝÞßàáâãäåæçèéêëìíîïðñòóôõö÷øùúûüýþÿ¡£¿«»²³¹°±µ·€π";
+        assert_eq!(missing(line), []);
+        let glyphs: Vec<_> = line.chars().map(|c| text(&c.to_string(), 6.0).0).collect();
+        let question = text("?", 6.0).0;
+        for (k, glyph) in glyphs.iter().enumerate() {
+            let character = line.chars().nth(k).expect("a character");
+            assert!(!glyphs[..k].contains(glyph) && *glyph != question, "{character}");
+            let mut points = glyph.iter().flatten();
+            assert!(
+                points.all(|p| p.x >= 0.0 && p.x <= 4.0 && p.y >= -2.0 && p.y <= 8.0),
+                "{character}"
+            );
+        }
+        assert_eq!(missing("日本 Grüße 日"), ['日', '本']);
+        assert_eq!(text("日", 6.0), text("?", 6.0));
+    }
+
+    #[test]
+    fn accents_can_follow_their_letters() {
+        assert_eq!(text("Gru\u{308}ße, A\u{30a}s", 6.0), text("Grüße, Ås", 6.0));
+        assert_ne!(text("ü", 6.0).0, text("u", 6.0).0);
+        let widths = ["ï", "i"].map(|line| text(line, 6.0).1);
+        assert!(widths[0] > widths[1]);
+    }
 }

@@ -8,20 +8,21 @@
 //!    ┼ ╲┼┼┼╱
 //! ```
 
+mod axis;
 mod font;
+mod letters;
+mod ticks;
 
-pub use font::text;
+pub use font::{missing, text};
 
 use glam::{DVec2, DVec3, dvec2};
 
-use crate::strokes::{Drawing, StrokeKind};
+use self::axis::{Axis, Laid, write_centered};
+use crate::strokes::Drawing;
 use crate::view::{Camera, Projection};
 
 /// Height of numbers, as a part of the longer side of the box's image: 4.6 mm on A4 landscape.
 const TEXT_HEIGHT: f64 = 1.0 / 60.0;
-
-/// About how many ticks an axis has.
-const TICKS: f64 = 5.0;
 
 /// What is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,6 +51,19 @@ pub fn dress(
     camera: &Camera,
     titles: &Titles,
 ) {
+    let Some((axes, (low, high), height)) = lay(bounds, z_factor, camera, titles) else { return };
+    axes.iter().for_each(|axis| axis.draw(drawing));
+    if !titles.drawing.is_empty() {
+        let at = dvec2(low.x / 2.0 + high.x / 2.0, high.y.max(top(drawing)) + 3.0 * height);
+        write_centered(drawing, &titles.drawing, 1.5 * height, at);
+    }
+}
+
+/// Axes in their places, the least and greatest coordinates of the box in the image, and the height
+/// of numbers there.
+type Layout = (Vec<Laid>, (DVec2, DVec2), f64);
+
+fn lay(bounds: (DVec3, DVec3), z_factor: f64, camera: &Camera, titles: &Titles) -> Option<Layout> {
     let bbox = BoundingBox { low: bounds.0, high: bounds.1, camera };
     let corners = (0..8).map(|k| bbox.corner([k & 1, k >> 1 & 1, k >> 2 & 1].map(|b| b == 1)));
     let near = match camera.projection() {
@@ -60,27 +74,32 @@ pub fn dress(
     let corners: Vec<DVec3> = corners.collect();
     let depth = |p: &DVec3| (*p - camera.eye()).dot(forward);
     if !corners.iter().all(|p| p.is_finite() && depth(p) > near) {
-        return;
+        return None;
     }
     let images: Vec<DVec2> = corners.iter().map(|p| camera.image(*p)).collect();
     let low = images.iter().fold(DVec2::INFINITY, |low, p| low.min(*p));
     let high = images.iter().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p));
     let height = (high - low).max_element() * TEXT_HEIGHT;
     if !(height > 0.0 && height.is_finite()) {
-        return;
+        return None;
     }
     let center = images.iter().sum::<DVec2>() / 8.0;
+    let (mut axes, mut laid) = (Vec::new(), Vec::new());
     for axis in 0..3 {
-        if let Some([a, b]) = bbox.axis_edge(axis) {
-            let factor = if axis == 2 { z_factor } else { 1.0 };
-            Axis { axis, a, b, factor, center, height, title: &titles.axes[axis] }
-                .draw(camera, drawing);
+        let Some([a, b]) = bbox.axis_edge(axis) else { continue };
+        let factor = if axis == 2 { z_factor } else { 1.0 };
+        let axis = Axis { axis, a, b, factor, center, height, title: &titles.axes[axis] };
+        if let Some(place) = axis.lay(camera, &laid) {
+            laid.push(place);
+            axes.push(axis);
         }
     }
-    if !titles.drawing.is_empty() {
-        let at = dvec2(low.x / 2.0 + high.x / 2.0, high.y.max(top(drawing)) + 3.0 * height);
-        write_centered(drawing, &titles.drawing, 1.5 * height, at);
+    // Numbers first: titles can go farther out.
+    for (k, axis) in axes.iter().enumerate() {
+        let title = axis.place_title(k, &laid);
+        laid[k].set_title(title);
     }
+    Some((laid, (low, high), height))
 }
 
 fn top(drawing: &Drawing) -> f64 {
@@ -134,134 +153,57 @@ impl BoundingBox<'_> {
     }
 }
 
-/// One axis, from `a` to `b` in space.
-struct Axis<'a> {
-    axis: usize,
-    a: DVec3,
-    b: DVec3,
-    factor: f64,
-    /// Of the box, in the image.
-    center: DVec2,
-    /// Of numbers, in the image.
-    height: f64,
-    title: &'a str,
-}
-
-impl Axis<'_> {
-    fn draw(&self, camera: &Camera, drawing: &mut Drawing) {
-        let ends = [self.a, self.b].map(|p| camera.image(p));
-        let along = (ends[1] - ends[0]).normalize_or_zero();
-        if along == DVec2::ZERO {
-            return;
-        }
-        let middle = ends[0] / 2.0 + ends[1] / 2.0;
-        let mut out = along.perp();
-        if out.dot(middle - self.center) < 0.0 {
-            out = -out;
-        }
-        drawing.push(StrokeKind::Axis, 0, ends);
-        let (from, to) = (self.a[self.axis] / self.factor, self.b[self.axis] / self.factor);
-        let mut reach = 0.0_f64;
-        for (value, label) in ticks(from.min(to), from.max(to)) {
-            let mut p = self.a;
-            p[self.axis] = value * self.factor;
-            let foot = camera.image(p);
-            let tip = foot + out * (0.6 * self.height);
-            drawing.push(StrokeKind::Axis, 0, [foot, tip]);
-            let extent = self.beside(drawing, &label, self.height, tip, out);
-            reach = reach.max(extent);
-        }
-        if !self.title.is_empty() {
-            let at = middle + out * (0.6 * self.height + reach);
-            self.beside(drawing, self.title, 1.3 * self.height, at, out);
-        }
-    }
-
-    /// Writes a line whose box stands off `at` in the direction `out`; returns how far it reaches.
-    fn beside(&self, drawing: &mut Drawing, line: &str, height: f64, at: DVec2, out: DVec2) -> f64 {
-        let (_, width) = text(line, height);
-        let half = (out.x.abs() * width + out.y.abs() * height) / 2.0;
-        let gap = 0.6 * self.height;
-        write_centered(drawing, line, height, at + out * (gap + half));
-        gap + 2.0 * half
-    }
-}
-
-/// Writes a line with the middle of its capitals at `at`.
-fn write_centered(drawing: &mut Drawing, line: &str, height: f64, at: DVec2) {
-    let (strokes, width) = text(line, height);
-    let corner = at - dvec2(width, height) / 2.0;
-    for stroke in strokes {
-        drawing.push(StrokeKind::Text, 0, stroke.into_iter().map(|p| corner + p));
-    }
-}
-
-/// Round numbers from `low` to `high`, about [`TICKS`], with what is written beside them.
-fn ticks(low: f64, high: f64) -> Vec<(f64, String)> {
-    let range = high - low;
-    if !(range > 0.0 && range.is_finite()) {
-        return Vec::new();
-    }
-    let exponent = libm::floor(libm::log10(range / TICKS));
-    let power = libm::pow(10.0, exponent);
-    let wanted = range / TICKS / power;
-    let digit = [1.0, 2.0, 5.0].into_iter().find(|digit| *digit >= wanted).unwrap_or(10.0);
-    let step = digit * power;
-    let first = libm::ceil(low / step);
-    let count = libm::floor(high / step) - first;
-    // Beyond the digits of a number, ticks would fall together.
-    if !(step > 0.0 && (0.0..100.0).contains(&count) && first.abs() < 1e12) {
-        return Vec::new();
-    }
-    let decimals = if digit == 10.0 { -exponent - 1.0 } else { -exponent }.clamp(0.0, 300.0);
-    let is_plain = (-5.0..6.0).contains(&exponent) && low.abs().max(high.abs()) < 1e7;
-    (0..=count as u32)
-        .map(|k| {
-            let number = first + f64::from(k);
-            // Dividing by a whole number rounds once: 0.3, not 0.30000000000000004.
-            let whole = libm::pow(10.0, decimals);
-            let value = if decimals > 0.0 && whole.is_finite() {
-                number * libm::round(step * whole) / whole
-            } else {
-                number * step
-            } + 0.0;
-            let label = if is_plain {
-                format!("{value:.*}", decimals as usize)
-            } else {
-                format!("{value:e}")
-            };
-            (value, label)
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::dvec3;
+
     use super::*;
 
-    #[test]
-    fn ticks_are_round_numbers_with_the_digits_they_need() {
-        let labels = |low, high| -> Vec<String> {
-            ticks(low, high).into_iter().map(|(_, label)| label).collect()
-        };
-        assert_eq!(labels(-5.0, 5.0), ["-4", "-2", "0", "2", "4"]);
-        assert_eq!(labels(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(0.05, 0.31), ["0.1", "0.2", "0.3"]);
-        assert_eq!(labels(0.0, 1234.0), ["0", "500", "1000"]);
-        assert!(labels(1.0, 1.0).is_empty() && labels(1e300, 1e300 + 1e285).is_empty());
+    /// The axes of a box as an eye sees them that is `distance` away, if it sees any.
+    fn laid(size: DVec3, eye: DVec3, titles: &Titles) -> Vec<Laid> {
+        let camera = Camera::new(
+            eye,
+            DVec3::ZERO,
+            DVec3::Z,
+            Projection::Perspective { fov_deg: 30.0, near: 1e-3 },
+        );
+        lay((-size / 2.0, size / 2.0), 1.0, &camera.expect("a camera"), titles)
+            .map_or(Vec::new(), |(laid, ..)| laid)
     }
 
     #[test]
-    fn every_printable_character_has_strokes_of_its_own() {
-        let glyphs: Vec<_> = ('!'..='~').map(|c| text(&c.to_string(), 6.0).0).collect();
-        for (k, glyph) in glyphs.iter().enumerate() {
-            assert!(
-                !glyph.is_empty() && !glyphs[..k].contains(glyph),
-                "{:?}",
-                char::from(33 + k as u8)
-            );
-            let points = glyph.iter().flatten();
-            assert!(points.clone().all(|p| p.x >= 0.0 && p.x <= 4.0 && p.y >= -2.0 && p.y <= 7.0));
+    fn no_text_touches_another() {
+        let long = ["the first direction", "the second direction", "height"].map(str::to_owned);
+        let titles = Titles { axes: long, drawing: String::new() };
+        let mut n_texts = 0;
+        for size in [[1.0, 1.0, 1.0], [10.0, 1.0, 0.3], [1.0, 20.0, 3.0], [2e4, 2e4, 0.7]] {
+            let size = DVec3::from_array(size);
+            for step in 0..40 {
+                let azimuth = f64::from(step) * 0.17;
+                for elevation in [0.1, 0.4, 0.9, 1.4] {
+                    let (sin, cos) = (libm::sin(elevation), libm::cos(elevation));
+                    let way = dvec3(libm::sin(azimuth) * cos, -libm::cos(azimuth) * cos, sin);
+                    let laid = laid(size, way * 4.0 * size.length(), &titles);
+                    let boxes: Vec<(DVec2, DVec2)> =
+                        laid.iter().flat_map(Laid::labels).map(|label| label.drawn_box()).collect();
+                    n_texts += boxes.len();
+                    for (k, (low, high)) in boxes.iter().enumerate() {
+                        for (other_low, other_high) in &boxes[..k] {
+                            let apart = (*low - *other_high).max(*other_low - *high);
+                            assert!(apart.max_element() > 0.0, "{size} {azimuth} {elevation}");
+                        }
+                    }
+                }
+            }
         }
+        assert!(n_texts > 4000, "{n_texts}");
+    }
+
+    #[test]
+    fn a_short_axis_has_fewer_ticks_than_a_long_one() {
+        let count = |laid: &[Laid], k: usize| laid[k].labels().count();
+        let titles = Titles { axes: Default::default(), drawing: String::new() };
+        let flat = laid(dvec3(10.0, 10.0, 0.2), dvec3(8.0, -30.0, 12.0), &titles);
+        assert!(count(&flat, 0) >= 4 && (1..=2).contains(&count(&flat, 2)));
     }
 }

@@ -9,6 +9,8 @@ pub(super) enum Token {
     Name(String),
     /// An operator or bracket, in its main spelling.
     Symbol(&'static str),
+    /// An exponent in raised digits, as in `x²`.
+    Raised(f64),
     End,
 }
 
@@ -26,6 +28,7 @@ impl Token {
             Self::Number(value) => format!("the number {value}"),
             Self::Name(name) => format!("`{name}`"),
             Self::Symbol(symbol) => format!("`{symbol}`"),
+            Self::Raised(value) => format!("the exponent {value}"),
             Self::End => "the end of the formula".to_owned(),
         }
     }
@@ -48,7 +51,7 @@ const SYMBOLS: [(&str, &str); 29] = [
     ("×", "*"),
     ("<", "<"),
     (">", ">"),
-    ("=", "=="),
+    ("=", "="),
     ("!", "!"),
     ("+", "+"),
     ("-", "-"),
@@ -89,10 +92,13 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, FormulaError> {
                 if *symbol == "π" { Token::Name("pi".to_owned()) } else { Token::Symbol(symbol) };
             tokens.push(Placed { token, column });
             spelling.len()
+        } else if let Some((length, value)) = raised(rest) {
+            tokens.push(Placed { token: Token::Raised(value), column });
+            length
         } else if first.is_alphabetic() || first == '_' {
-            let length = rest
-                .find(|c: char| !(c.is_alphanumeric() || c == '_') || c == 'π')
-                .unwrap_or(rest.len());
+            let is_in_name =
+                |c: char| (c.is_alphanumeric() || c == '_') && c != 'π' && !RAISED.contains(&c);
+            let length = rest.find(|c: char| !is_in_name(c)).unwrap_or(rest.len());
             let token = match rest[..length].to_lowercase().as_str() {
                 "and" => Token::Symbol("&&"),
                 "or" => Token::Symbol("||"),
@@ -113,6 +119,19 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, FormulaError> {
     }
     tokens.push(Placed { token: Token::End, column });
     Ok(tokens)
+}
+
+/// Digits as they are written in exponents, from 0.
+const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// The exponent in raised digits that `text` begins with, and its bytes.
+fn raised(text: &str) -> Option<(usize, f64)> {
+    let (digits, sign) = text.strip_prefix('⁻').map_or((text, 1.0), |digits| (digits, -1.0));
+    let digit = |c: char| RAISED.iter().position(|raised| *raised == c);
+    let end = digits.find(|c| digit(c).is_none()).unwrap_or(digits.len());
+    let value = |value: f64, c| digit(c).map(|digit| value * 10.0 + digit as f64);
+    let value = digits[..end].chars().try_fold(0.0, value).filter(|value| value.is_finite())?;
+    (end > 0).then_some((text.len() - digits.len() + end, sign * value))
 }
 
 fn starts_fraction(text: &str) -> bool {

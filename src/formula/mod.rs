@@ -12,7 +12,8 @@
 //! # Language
 //!
 //! Loosest first: `c ? a : b`; `||` or `or`; `&&` or `and`; `< <= > >= == !=`; `+ -`; `* / %`;
-//! unary `- + !` or `not`; `^` or `**` (binds to the right, `-x^2` is `-(x^2)`). True is 1, false is
+//! unary `- + !` or `not`; `^` or `**` (binds to the right, `-x^2` is `-(x^2)`), or raised digits as
+//! in `x²`. True is 1, false is
 //! 0, and anything but 0 is true; what is not a number is false. `%` and `mod` take the sign of the
 //! divisor. Both branches of a condition may be evaluated; only the chosen one counts. Names are
 //! listed in [`FUNCTIONS`] and [`CONSTANTS`].
@@ -81,8 +82,8 @@ pub enum Problem {
     UnknownName {
         /// As written.
         name: String,
-        /// The known name that is spelled most like it.
-        near: Option<&'static str>,
+        /// The known name that is spelled most like it, or the product that it looks like.
+        near: Option<String>,
     },
     /// A value was expected.
     #[error("expected a value but found {0}")]
@@ -90,6 +91,22 @@ pub enum Problem {
     /// An operator or the end was expected.
     #[error("expected an operator but found {0}")]
     ExpectedOperator(String),
+    /// Two values beside each other, as in `2x`.
+    #[error("expected an operator but found {found}; a product is written `{left}*{right}`")]
+    MissingTimes {
+        /// The second one, in words.
+        found: String,
+        /// The first one.
+        left: String,
+        /// The second one.
+        right: String,
+    },
+    /// `=`, which assigns or compares elsewhere.
+    #[error("`=` has no meaning in a formula: for a condition write `==`, `<=` or `>=`")]
+    SingleEquals,
+    /// `z = …`.
+    #[error("a formula is only the right side: leave out `{0} =`")]
+    Assignment(String),
     /// A closing parenthesis or something else is missing.
     #[error("expected {expected} but found {found}")]
     Expected {
@@ -116,8 +133,8 @@ pub enum Problem {
     ChainedComparison,
 }
 
-fn hint(near: &Option<&'static str>) -> String {
-    near.map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
+fn hint(near: &Option<String>) -> String {
+    near.as_ref().map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
 }
 
 impl Formula {

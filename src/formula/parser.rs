@@ -5,12 +5,40 @@ use super::tape::{CONSTANTS, FUNCTIONS, Op, Tape, function};
 use super::{FormulaError, MAX_DEPTH, Problem, Variables};
 
 pub(super) fn parse(tokens: &[Placed], variables: Variables) -> Result<Tape, FormulaError> {
+    if let Some(left) = left_side(tokens, variables) {
+        return Err(FormulaError { column: 1, problem: Problem::Assignment(left) });
+    }
     let mut parser = Parser { tokens, at: 0, depth: 0, variables, tape: Tape::default() };
     parser.expression(0)?;
     match parser.peek() {
         Token::End => Ok(parser.tape),
-        token => Err(parser.fails(Problem::ExpectedOperator(token.describe()))),
+        _ => Err(parser.fails(parser.no_operator())),
     }
+}
+
+/// What stands before a single `=`, if that cannot be meant as a condition: `z`, `f(x, y)`.
+fn left_side(tokens: &[Placed], variables: Variables) -> Option<String> {
+    let equals = tokens.iter().position(|t| t.token == Token::Symbol("="))?;
+    let Token::Name(name) = &tokens.first()?.token else { return None };
+    let is_variable = variable(name, variables).is_some();
+    let is_call = equals > 2
+        && tokens[1].token == Token::Symbol("(")
+        && tokens[equals - 1].token == Token::Symbol(")");
+    match (equals, is_variable, is_call) {
+        (1, false, _) => Some(name.clone()),
+        (_, false, true) if function(name).is_none() => Some(format!("{name}(…)")),
+        _ => None,
+    }
+}
+
+fn variable(name: &str, variables: Variables) -> Option<Op> {
+    Some(match (variables, name) {
+        (Variables::Plane, "x") | (Variables::Parameters, "u") => Op::First,
+        (Variables::Plane, "y") | (Variables::Parameters, "v") => Op::Second,
+        (Variables::Plane, "r") => Op::Radius,
+        (Variables::Plane, "theta") => Op::Angle,
+        _ => return None,
+    })
 }
 
 struct Parser<'a> {
@@ -72,8 +100,36 @@ impl<'a> Parser<'a> {
             self.next();
             return Ok(());
         }
+        // What could begin a value here is a factor that is meant to be multiplied.
+        if let problem @ (Problem::MissingTimes { .. } | Problem::SingleEquals) = self.no_operator()
+        {
+            return Err(self.fails(problem));
+        }
         let found = self.peek().describe();
         Err(self.fails(Problem::Expected { expected, found }))
+    }
+
+    /// What is wrong where a value ends and no operator follows.
+    fn no_operator(&self) -> Problem {
+        let next = self.peek();
+        let before = self.at.checked_sub(1).map(|before| &self.tokens[before].token);
+        let right = match next {
+            Token::Symbol("=") => return Problem::SingleEquals,
+            Token::Number(value) => Some(value.to_string()),
+            Token::Name(name) => Some(name.clone()),
+            Token::Symbol("(") => Some("(…)".to_owned()),
+            _ => None,
+        };
+        let left = match before {
+            Some(Token::Number(value)) => Some(value.to_string()),
+            Some(Token::Name(name)) => Some(name.clone()),
+            Some(Token::Symbol(")")) => Some("(…)".to_owned()),
+            _ => None,
+        };
+        match left.zip(right) {
+            Some((left, right)) => Problem::MissingTimes { found: next.describe(), left, right },
+            None => Problem::ExpectedOperator(next.describe()),
+        }
     }
 
     /// Reads everything that binds at least as tightly as `tightness`.
@@ -83,7 +139,15 @@ impl<'a> Parser<'a> {
             return Err(self.fails(Problem::TooDeep));
         }
         self.value()?;
-        while let Token::Symbol(symbol) = self.peek() {
+        loop {
+            // A raised exponent binds before all operators: `2^x²` is `2^(x²)`.
+            if let Token::Raised(exponent) = self.peek() {
+                self.next();
+                self.tape.push(Op::Constant(*exponent));
+                self.tape.push(Op::Power);
+                continue;
+            }
+            let Token::Symbol(symbol) = self.peek() else { break };
             if *symbol == "?" && tightness <= CONDITION {
                 self.next();
                 self.expression(0)?;
@@ -142,16 +206,12 @@ impl<'a> Parser<'a> {
             self.next();
             return self.arguments(name, takes, op, at);
         }
-        let op = match (self.variables, name) {
-            (Variables::Plane, "x") | (Variables::Parameters, "u") => Op::First,
-            (Variables::Plane, "y") | (Variables::Parameters, "v") => Op::Second,
-            (Variables::Plane, "r") => Op::Radius,
-            (Variables::Plane, "theta") => Op::Angle,
-            _ => match CONSTANTS.iter().find(|(constant, _)| *constant == name) {
-                Some((_, value)) => Op::Constant(*value),
-                None => return Err(self.fails_at(at, unknown(name, self.variables))),
-            },
+        let constant = || {
+            let constant = CONSTANTS.iter().find(|(constant, _)| *constant == name);
+            constant.map(|(_, value)| Op::Constant(*value))
         };
+        let op = variable(name, self.variables).or_else(constant);
+        let op = op.ok_or_else(|| self.fails_at(at, unknown(name, self.variables)))?;
         self.tape.push(op);
         Ok(())
     }
@@ -222,6 +282,7 @@ fn unknown(name: &str, variables: Variables) -> Problem {
     if let Some((function, ..)) = function(name) {
         return Problem::FunctionNeedsArguments(function);
     }
+    let named = variables;
     let variables: &[&'static str] = match variables {
         Variables::Plane => &["theta"],
         Variables::Parameters => &[],
@@ -231,7 +292,11 @@ fn unknown(name: &str, variables: Variables) -> Problem {
         .map(|known| (edit_distance(name, known), *known))
         .min()
         .filter(|(distance, _)| *distance <= 2 && 2 * distance < name.chars().count())
-        .map(|(_, known)| known);
+        .map(|(_, known)| known.to_owned());
+    // Variables run together: `xy`.
+    let letters: Vec<String> = name.chars().map(String::from).collect();
+    let product = letters.iter().all(|letter| variable(letter, named).is_some());
+    let near = near.or_else(|| product.then(|| letters.join("*")));
     Problem::UnknownName { name: name.to_owned(), near }
 }
 

@@ -209,7 +209,7 @@ impl Ways {
             seconds += ramp_seconds(*length, from, to, limit, motion.down_acceleration);
             from = to;
         }
-        (lengths.iter().sum(), seconds)
+        (lengths.iter().sum::<f64>() + 0.0, seconds)
     }
 }
 

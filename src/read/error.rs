@@ -45,7 +45,7 @@ pub enum Fault {
     /// Neither name nor content tell the format.
     #[error(
         "cannot tell the format from its name or content; \
-         say which of obj, stl, ply and off it is"
+         if it is a model, give --input-format obj, stl, ply or off"
     )]
     UnknownFormat,
     /// Zero bytes.

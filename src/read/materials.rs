@@ -1,7 +1,7 @@
 //! Colors of materials: the diffuse ones of the MTL files that an OBJ file names.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::text;
 
@@ -14,16 +14,14 @@ pub struct MaterialColors {
     pub warnings: Vec<String>,
 }
 
-/// Reads the colors for the materials of an OBJ file; other files and standard input have none.
-///
-/// A file that is missing or no good is a warning, not an error: the model is there without it.
-pub fn material_colors(path: &Path) -> MaterialColors {
-    let mut found = MaterialColors::default();
+/// The MTL files that an OBJ file names, whether they are there or not; other files and standard
+/// input name none. Reads the whole file.
+pub fn material_files(path: &Path) -> Vec<PathBuf> {
     let is_obj = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if !is_obj {
-        return found;
+        return Vec::new();
     }
-    let Ok(bytes) = std::fs::read(path) else { return found };
+    let Ok(bytes) = std::fs::read(path) else { return Vec::new() };
     let decoded = text::decode(&bytes);
     let records = decoded.split(|&byte| text::is_line_end(byte));
     let mut names: Vec<String> = records
@@ -33,8 +31,16 @@ pub fn material_colors(path: &Path) -> MaterialColors {
         .collect();
     names.sort();
     names.dedup();
-    for name in names {
-        let beside = path.parent().unwrap_or(Path::new("")).join(&name);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    names.iter().map(|name| folder.join(name)).collect()
+}
+
+/// Reads the colors for the materials of an OBJ file; other files and standard input have none.
+///
+/// A file that is missing or no good is a warning, not an error: the model is there without it.
+pub fn material_colors(path: &Path) -> MaterialColors {
+    let mut found = MaterialColors::default();
+    for beside in material_files(path) {
         let read = std::fs::read(&beside).map_err(|error| error.to_string()).and_then(|bytes| {
             tobj::load_mtl_buf(&mut bytes.as_slice()).map_err(|error| error.to_string())
         });

@@ -27,7 +27,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use error::{Fault, ReadError};
-pub use materials::{MaterialColors, material_colors};
+pub use materials::{MaterialColors, material_colors, material_files};
 pub use warning::{Notice, Warning};
 
 use crate::mesh::{Mesh, PolygonSoup, Repairs};

@@ -38,6 +38,12 @@ fn operators_bind_as_in_mathematics() {
         ("theta", libm::atan2(5.0, 3.0)),
         ("π - pi", 0.0),
         ("2e", f64::NAN),
+        ("x² + y³", 134.0),
+        ("-x²", -9.0),
+        ("2^x²", 512.0),
+        ("x²^2", 81.0),
+        ("(x - 1)¹⁰", 1024.0),
+        ("(x + 1)⁻²", 0.0625),
     ] {
         if text == "2e" {
             assert!(Formula::parse(text, Variables::Plane).is_err());
@@ -79,7 +85,28 @@ fn errors_name_the_column() {
         ("x + zebra", "column 5: unknown name `zebra`"),
         ("(x + 1", "column 7: expected `)` but found the end of the formula"),
         ("x + * 2", "column 5: expected a value but found `*`"),
-        ("x 2", "column 3: expected an operator but found the number 2"),
+        (
+            "x 2",
+            "column 3: expected an operator but found the number 2; a product is written `x*2`",
+        ),
+        ("2x", "column 2: expected an operator but found `x`; a product is written `2*x`"),
+        (
+            "(x+1)(y)",
+            "column 6: expected an operator but found `(`; a product is written `(…)*(…)`",
+        ),
+        ("x + xy", "column 5: unknown name `xy`; did you mean `x*y`?"),
+        ("sin(2x)", "column 6: expected an operator but found `x`; a product is written `2*x`"),
+        ("x !", "column 3: expected an operator but found `!`"),
+        ("z = x^2", "column 1: a formula is only the right side: leave out `z =`"),
+        ("f(x, y) = x", "column 1: a formula is only the right side: leave out `f(…) =`"),
+        (
+            "x = 3",
+            "column 3: `=` has no meaning in a formula: for a condition write `==`, `<=` or `>=`",
+        ),
+        (
+            "(x = 3) && y",
+            "column 4: `=` has no meaning in a formula: for a condition write `==`, `<=` or `>=`",
+        ),
         ("π + $", "column 5: `$` has no meaning in a formula"),
         ("1.2.3", "column 1: `1.2.3` is not a number"),
         ("1e999", "column 1: `1e999` is not a number"),
@@ -130,7 +157,7 @@ fn blocks_of_samples_give_the_same_as_single_ones() {
 
 proptest::proptest! {
     #[test]
-    fn no_text_makes_the_parser_panic(text in "[-+*/^%()<>=!&|?:,. a-z0-9πθ]{0,60}") {
+    fn no_text_makes_the_parser_panic(text in "[-+*/^%()<>=!&|?:,. a-z0-9πθ²⁰⁻]{0,60}") {
         if let Ok(formula) = Formula::parse(&text, Variables::Plane) {
             formula.value(0.5, -2.0);
         }

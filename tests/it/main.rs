@@ -18,6 +18,7 @@ mod intersections;
 mod laws;
 mod line_svg;
 mod materials;
+mod mistakes;
 mod optimize;
 mod oracle;
 mod outline;

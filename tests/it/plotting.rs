@@ -88,10 +88,10 @@ fn machines_are_known_by_name_and_near_misses_are_told() {
     let (_keep, folder) = with_models();
     let draw = |more: &[&str]| hiddenline(&folder, &[&["draw", "cube.obj"], more].concat());
     let unknown = draw(&["--machine", "hp7457a", "-o", "a.plt"]);
-    assert_fails(&unknown, 1, "did you mean hp7475a");
+    assert_fails(&unknown, 2, "did you mean hp7475a");
     let other = draw(&["--machine", "grbl", "-o", "a.gcode"]);
-    assert_fails(&other, 1, "did you mean grbl-z or");
-    assert_fails(&draw(&["--machine", "marlin", "-o", "a.plt"]), 1, "not a machine for hpgl");
+    assert_fails(&other, 2, "did you mean grbl-z or");
+    assert_fails(&draw(&["--machine", "marlin", "-o", "a.plt"]), 2, "not a machine for hpgl");
     fs::write(folder.join("mine.toml"), "feed = 1\n").unwrap();
     assert_fails(&draw(&["--gcode-profile", "mine.toml", "-o", "a.nc"]), 1, "mine.toml: ");
     assert_fails(&draw(&["--page", "123x45", "--margin", "1", "-o", "a.plt"]), 1, "no paper of");
@@ -218,7 +218,7 @@ fn typed_settings_go_before_the_environment_and_that_before_files() {
     assert!(shown.contains("page = \"a2\"  # hiddenline.toml"), "{shown}");
     assert!(shown.contains("margin = \"20"), "{shown}");
     let output = hiddenline(&folder, &["draw", "cube.obj", "--preset", "smal"]);
-    assert_fails(&output, 1, "did you mean small");
+    assert_fails(&output, 2, "did you mean small");
     fs::write(folder.join("hiddenline.toml"), "[defaults]\npgae = 'a2'\n").unwrap();
     assert_fails(&hiddenline(&folder, &["draw", "cube.obj"]), 1, "pgae");
 }
@@ -261,7 +261,7 @@ up_acceleration = 400\nraise = 0.1\nlower = 0.1
         "machine broken in hiddenline.toml: template line: unknown placeholder",
     );
     assert_fails(&draw(&["--machine", "stray", "-o", "a.nc"]), 1, "did you mean grbl");
-    assert_fails(&draw(&["--machine", "mime", "-o", "a.nc"]), 1, "did you mean mine");
+    assert_fails(&draw(&["--machine", "mime", "-o", "a.nc"]), 2, "did you mean mine");
     let shown = text(&hiddenline(&folder, &["config", "show"]).stdout);
     assert!(shown.contains("#   machine mine"), "{shown}");
 }

@@ -6,19 +6,25 @@ use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
 use hiddenline::engines::edge::Engine;
 use hiddenline::page::Dash;
 
-use crate::cli::values;
+use crate::cli::plotting::Plotting;
+use crate::cli::{config, values};
 
 #[derive(Args)]
 #[command(next_help_heading = "Lines")]
 pub(super) struct LineArgs {
     /// Kinds of line to draw, with commas between them
     ///
-    /// silhouette: between a front and a back face; crease: where faces meet at more than --crease;
-    /// boundary: on one face only; nonmanifold: on three faces or more; intersection: where faces
-    /// pierce each other; material: where groups or materials change; mesh, all: every edge of the
-    /// mesh. An edge to which several kinds apply is drawn when any of them is named.
-    /// outline: the parts of silhouette, boundary and nonmanifold edges beside which nothing but the
-    /// background is seen; named with other kinds it has a pen of its own, twice as wide.
+    ///   silhouette    between a front and a back face
+    ///   crease        where faces meet at more than --crease
+    ///   boundary      on one face only
+    ///   nonmanifold   on three faces or more
+    ///   intersection  where faces pierce each other
+    ///   material      where groups or materials change
+    ///   mesh, all     every edge of the mesh
+    ///   outline       silhouette, boundary and nonmanifold edges where the background is seen
+    ///                 beside them; with other kinds it has its own pen, twice as wide
+    ///
+    /// An edge to which several kinds apply is drawn when any of them is named.
     #[arg(long, value_name = "KINDS", value_parser = values::lines, verbatim_doc_comment)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
     lines: LineSelection,
@@ -74,17 +80,45 @@ enum EngineName {
 }
 
 impl LineArgs {
+    /// Warnings about what was typed but has no effect.
+    pub(super) fn without_effect(&self, plotting: &Plotting) -> Vec<String> {
+        let hidden = self.options().hidden;
+        let is_none = hidden == HiddenLines::None;
+        let has_levels = self.hidden_levels.is_some();
+        let idle = [
+            (
+                hidden != HiddenLines::Dashed,
+                "--dash",
+                "--dash has no effect without --hidden dashed",
+            ),
+            (
+                is_none && has_levels,
+                "--hidden-levels",
+                "--hidden-levels has no effect with --hidden none",
+            ),
+            (
+                is_none && plotting.has_hidden_pens(),
+                "--pen",
+                "--pen for hidden lines has no effect without --hidden dashed or solid",
+            ),
+        ];
+        let typed = idle.iter().filter(|(is_idle, option, _)| *is_idle && config::is_typed(option));
+        typed.map(|(.., warning)| (*warning).to_owned()).collect()
+    }
+
     pub(super) fn options(&self) -> DrawOptions {
+        let hidden = match self.hidden {
+            None | Some(Hidden::None) if self.hidden_levels.is_none() => HiddenLines::None,
+            Some(Hidden::None) if config::is_typed("--hidden") => HiddenLines::None,
+            Some(Hidden::Solid) => HiddenLines::Solid,
+            _ if self.exact => HiddenLines::Solid,
+            _ => HiddenLines::Dashed,
+        };
         DrawOptions {
             lines: self.lines,
             crease_deg: self.crease,
-            hidden: match self.hidden {
-                None | Some(Hidden::None) if self.hidden_levels.is_none() => HiddenLines::None,
-                Some(Hidden::Solid) => HiddenLines::Solid,
-                _ if self.exact => HiddenLines::Solid,
-                _ => HiddenLines::Dashed,
-            },
-            hidden_levels: self.hidden_levels,
+            hidden,
+            hidden_levels: self.hidden_levels.filter(|_| hidden != HiddenLines::None),
             exact: self.exact,
             engine: match self.engine {
                 EngineName::Auto => Engine::Auto,

@@ -15,7 +15,7 @@ pub(super) struct AreaArgs {
     #[arg(long, value_enum, default_value = "auto")]
     engine: EngineName,
     /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
     /// How much of the farthest face's color becomes paper, from 0 to 1
     #[arg(long, value_name = "PART", value_parser = values::part, default_value_t = 0.0)]

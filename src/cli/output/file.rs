@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+use super::place::missing_folder;
+
 const BUFFER_BYTES: usize = 1 << 18;
 
 /// Writes to standard output.
@@ -56,7 +58,14 @@ fn create_beside(target: &Path, existing: Option<&fs::Metadata>) -> io::Result<N
         // What any program asks for that creates a file; the umask is taken off by the system.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let file = builder.tempfile_in(folder)?;
+    // The error would name the temporary file, which nobody knows.
+    let file = builder.tempfile_in(&folder).map_err(|error| match missing_folder(target) {
+        Some(folder) => io::Error::new(
+            io::ErrorKind::NotFound,
+            format!("there is no folder {}", folder.display()),
+        ),
+        None => error.kind().into(),
+    })?;
     if let Some(metadata) = existing {
         fs::set_permissions(file.path(), metadata.permissions())?;
     }

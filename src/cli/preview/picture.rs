@@ -31,7 +31,7 @@ pub(super) struct PictureArgs {
     #[arg(long, value_name = "DEG", value_parser = values::crease, default_value_t = 40.0)]
     smooth_angle: f64,
     /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
     /// Color of the faces
     #[arg(long, value_name = "COLOR", value_parser = values::rgb)]

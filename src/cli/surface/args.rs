@@ -8,7 +8,7 @@ use super::Job;
 use super::sheet_args::{Aspect, DEFAULT_SAMPLES, SheetArgs};
 use super::sheets::Input;
 use crate::cli::camera::CameraArgs;
-use crate::cli::output::OutputArgs;
+use crate::cli::output::{OutputArgs, check_place};
 use crate::cli::page::PageArgs;
 use crate::cli::{Refused, values};
 
@@ -229,9 +229,13 @@ impl SurfaceArgs {
         if lines.exact {
             sheets.aspect = Aspect::Data;
         }
+        let view = camera.view_source();
+        let output = output.options(lines.exact)?;
+        let inputs = sheets.file().into_iter().chain(view.input()).chain(output.inputs.clone());
+        check_place(output.path.as_deref(), inputs)?;
         Ok(Job {
             sheets,
-            view: camera.view_source(),
+            view,
             lines: along,
             levels: has(LineName::Levels)
                 .then(|| lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS))),
@@ -243,8 +247,9 @@ impl SurfaceArgs {
             underside: lines.underside,
             titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },
             page: page.options(),
+            unit_mm: page.unit_mm(),
             pen_width_mm: page.pen_width_mm(),
-            output: output.options(lines.exact)?,
+            output,
         })
     }
 }

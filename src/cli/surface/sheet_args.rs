@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use hiddenline::formula::{Formula, Variables};
-use hiddenline::surface::Placement;
+use hiddenline::surface::{MAX_SAMPLES, Placement};
 
 use super::sheets::{Input, Sheets};
+use crate::cli::formulas::in_formula;
 use crate::cli::values;
 
 /// Samples along each axis, unless given.
@@ -27,6 +28,7 @@ pub(in crate::cli) struct SheetArgs {
     points: Option<PathBuf>,
     /// Three formulas of u and v, for x, y and z
     #[arg(long, value_names = ["X", "Y", "Z"], num_args = 3, allow_hyphen_values = true)]
+    #[arg(value_parser = parametric)]
     #[arg(conflicts_with_all = ["expression", "grid", "points", "x", "y"])]
     parametric: Option<Vec<String>>,
     /// Range of u; its ends may be formulas such as 2*pi [default: 0:1]
@@ -94,7 +96,9 @@ impl SheetArgs {
         } else if !texts.is_empty() {
             let formulas = parsed(&texts, Variables::Plane)?;
             let domain = self.domain.map(|text| {
-                Formula::parse(&text, Variables::Plane).map_err(|e| format!("in --where, {e}"))
+                let parsed = Formula::parse(&text, Variables::Plane);
+                let parsed = parsed.map_err(|error| in_formula("--where", &text, &error));
+                parsed.map(|formula| (formula, text))
             });
             Input::Formulas { texts, formulas, domain: domain.transpose()?, samples }
         } else {
@@ -117,17 +121,19 @@ impl SheetArgs {
 
 fn parsed(texts: &[String], variables: Variables) -> Result<Vec<Formula>, String> {
     let parse = |(k, text): (usize, &String)| {
-        Formula::parse(text, variables).map_err(|error| match texts.len() {
-            1 => format!("in the formula, {error}"),
-            _ => format!("in formula {}, {error}", k + 1),
-        })
+        let which = match texts.len() {
+            1 => "the formula".to_owned(),
+            n => format!("formula {} of {n}", k + 1),
+        };
+        Formula::parse(text, variables).map_err(|error| in_formula(&which, text, &error))
     };
     texts.iter().enumerate().map(parse).collect()
 }
 
 /// A number or a formula without variables, such as `2*pi`.
 fn constant(text: &str) -> Result<f64, String> {
-    let formula = Formula::parse(text, Variables::Plane).map_err(|error| error.to_string())?;
+    let parsed = Formula::parse(text, Variables::Plane);
+    let formula = parsed.map_err(|error| in_formula(&format!("`{text}`"), text, &error))?;
     let value = formula.value(f64::NAN, f64::NAN);
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
 }
@@ -145,9 +151,22 @@ fn samples(text: &str) -> Result<(usize, usize), String> {
         let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
         if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }
     };
-    match text.split_once('x') {
-        Some((x, y)) => Ok((number(x)?, number(y)?)),
-        None => number(text).map(|n| (n, n)),
+    let (x, y) = text.split_once('x').unwrap_or((text, text));
+    let (x, y) = (number(x)?, number(y)?);
+    if x.checked_mul(y).is_none_or(|n| n > MAX_SAMPLES) {
+        return Err(format!("{x} × {y} samples are more than {MAX_SAMPLES}"));
     }
-    .map_err(|error: &str| error.to_owned())
+    Ok((x, y))
+}
+
+/// One of the formulas of --parametric. Since formulas may begin with a minus, clap takes the options
+/// after too few of them for more.
+fn parametric(text: &str) -> Result<String, String> {
+    let is_option = |rest: &str| rest.starts_with(|c: char| c.is_ascii_alphabetic());
+    let is_option =
+        text.strip_prefix("--").is_some_and(is_option) || ["-o", "-q", "-h", "-V"].contains(&text);
+    if is_option {
+        return Err("three formulas are needed, for x, y and z".into());
+    }
+    Ok(text.to_owned())
 }

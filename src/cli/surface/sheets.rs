@@ -28,14 +28,16 @@ const BOX_HEIGHT: f64 = 0.4;
 const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
 
 /// What is wrong with a surface without triangles.
-pub(super) const NO_CELLS: &str = "no four neighboring samples have a height: nothing to draw";
+pub(super) const NO_CELLS: &str = "no four neighboring samples have a height: nothing to \
+     draw; give more --samples or another range by --x and --y";
 
 /// Where the surface comes from.
 pub(in crate::cli) enum Input {
     Formulas {
         texts: Vec<String>,
         formulas: Vec<Formula>,
-        domain: Option<Formula>,
+        /// The formula with its text.
+        domain: Option<(Formula, String)>,
         samples: (usize, usize),
     },
     File(PathBuf),
@@ -225,7 +227,7 @@ impl Sheets {
                         let sample = |formula| Grid::sample(formula, x, y, samples);
                         Surface::Grids(formulas.map(sample).collect::<Result<_, _>>()?)
                     }
-                    Some(domain) => {
+                    Some((domain, _)) => {
                         let sample = |formula| TrimmedGrid::sample(formula, domain, x, y, samples);
                         let grids = formulas.map(sample).collect::<Result<Vec<_>, _>>()?;
                         if grids.iter().all(TrimmedGrid::is_whole) {
@@ -271,7 +273,7 @@ impl Sheets {
         };
         let (low, high) = surface.bounds();
         if low.x > high.x {
-            return Err("no sample has a height: nothing to draw".into());
+            return Err(self.nothing_to_draw().into());
         }
         let size = high - low;
         if !size.is_finite() {
@@ -289,6 +291,51 @@ impl Sheets {
         }
         surface.scale_heights(factor);
         Ok((surface, factor))
+    }
+
+    /// The file that is read, if there is one.
+    pub(in crate::cli) fn file(&self) -> Option<PathBuf> {
+        match &self.input {
+            Input::File(path) | Input::Points(path) => Some(path.clone()),
+            Input::Formulas { .. } | Input::Parametric { .. } => None,
+        }
+    }
+
+    /// Why no sample has a height, and what can be done about it.
+    fn nothing_to_draw(&self) -> String {
+        let range = |(from, to): (f64, f64)| format!("{from}:{to}");
+        match &self.input {
+            Input::Formulas { texts, formulas, domain, samples } => {
+                let x = self.placement.x.unwrap_or(DEFAULT_RANGE);
+                let y = self.placement.y.unwrap_or(DEFAULT_RANGE);
+                let has_value = |formula| {
+                    Grid::sample(formula, x, y, *samples).is_ok_and(|grid| grid.heights().is_some())
+                };
+                let what = match domain {
+                    Some((_, text)) if formulas.iter().any(has_value) => {
+                        format!("the condition --where `{text}` holds")
+                    }
+                    _ if texts.len() > 1 => format!("`{}` have values", texts.join("`, `")),
+                    _ => format!("`{}` has a value", texts.join("")),
+                };
+                let (columns, rows) = samples;
+                format!(
+                    "no sample has a height: {what} at none of {columns} × {rows} samples of x in {} \
+                     and y in {}; give another range by --x and --y, or more --samples",
+                    range(x),
+                    range(y)
+                )
+            }
+            Input::Parametric { u, v, .. } => format!(
+                "no sample has a place in space: the formulas have no values for u in {} and v in \
+                 {}; give another range by --u and --v",
+                range(*u),
+                range(*v)
+            ),
+            Input::File(path) | Input::Points(path) => {
+                format!("{}: no sample has a height: nothing to draw", path.display())
+            }
+        }
     }
 
     /// What a picture of it is called.

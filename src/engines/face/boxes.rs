@@ -1,9 +1,14 @@
 //! Which boxes of the image overlap: a grid of cells that lists them.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 /// Cells along each side, at most.
 const MOST_CELLS: usize = 256;
+
+/// Boxes that reach more cells than this are listed apart.
+const MOST_REACHED: usize = 64;
 
 /// Boxes by the cells of the image that they reach.
 pub(crate) struct BoxIndex {
@@ -11,6 +16,8 @@ pub(crate) struct BoxIndex {
     cell: DVec2,
     n: usize,
     cells: Vec<Vec<u32>>,
+    /// Boxes that are in no cell, since they reach too many.
+    large: Vec<u32>,
     boxes: Vec<(DVec2, DVec2)>,
 }
 
@@ -24,21 +31,25 @@ impl BoxIndex {
         let size = if boxes.is_empty() { DVec2::ONE } else { high - low };
         let cell = size / n as f64 + 1.0;
         let cells = vec![Vec::new(); n * n];
-        let mut index = Self { low, cell, n, cells, boxes };
+        let mut index = Self { low, cell, n, cells, large: Vec::new(), boxes };
         for number in 0..index.boxes.len() {
-            for cell in index.reached(index.boxes[number]) {
+            let (xs, ys) = index.reached(index.boxes[number]);
+            if xs.len() * ys.len() > MOST_REACHED {
+                index.large.push(number as u32);
+                continue;
+            }
+            for cell in ys.flat_map(|y| xs.clone().map(move |x| y * n + x)) {
                 index.cells[cell].push(number as u32);
             }
         }
         index
     }
 
-    fn reached(&self, (low, high): (DVec2, DVec2)) -> impl Iterator<Item = usize> + use<> {
-        let n = self.n;
-        let cell = |at: f64| (at.max(0.0) as usize).min(n - 1);
+    /// The columns and rows of cells that a box reaches.
+    fn reached(&self, (low, high): (DVec2, DVec2)) -> (Range<usize>, Range<usize>) {
+        let cell = |at: f64| (at.max(0.0) as usize).min(self.n - 1);
         let (from, to) = ((low - self.low) / self.cell, (high - self.low) / self.cell);
-        let (xs, ys) = (cell(from.x)..=cell(to.x), cell(from.y)..=cell(to.y));
-        ys.flat_map(move |y| xs.clone().map(move |x| y * n + x))
+        (cell(from.x)..cell(to.x) + 1, cell(from.y)..cell(to.y) + 1)
     }
 
     /// Whether more than `most` pairs of boxes overlap. O(boxes + pairs up to that).
@@ -55,13 +66,44 @@ impl BoxIndex {
     /// The boxes that have more than a border in common with a box, in order.
     pub(crate) fn overlapping(&self, bounds: (DVec2, DVec2), found: &mut Vec<u32>) {
         found.clear();
-        for cell in self.reached(bounds) {
-            found.extend(self.cells[cell].iter().filter(|&&other| {
-                let (low, high) = self.boxes[other as usize];
-                low.cmplt(bounds.1).all() && bounds.0.cmplt(high).all()
-            }));
+        let overlaps = |&other: &u32| {
+            let (low, high) = self.boxes[other as usize];
+            low.cmplt(bounds.1).all() && bounds.0.cmplt(high).all()
+        };
+        let (xs, ys) = self.reached(bounds);
+        if xs.len() * ys.len() > MOST_REACHED {
+            found.extend((0..self.boxes.len() as u32).filter(overlaps));
+            return;
+        }
+        found.extend(self.large.iter().copied().filter(overlaps));
+        for cell in ys.flat_map(|y| xs.clone().map(move |x| y * self.n + x)) {
+            found.extend(self.cells[cell].iter().copied().filter(overlaps));
         }
         found.sort_unstable();
         found.dedup();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_and_large_boxes_are_found_by_both() {
+        let at = |k: u32| DVec2::new(f64::from(k * 7 % 101), f64::from(k * 13 % 97));
+        let size = |k: u32| if k.is_multiple_of(9) { 60.0 } else { 2.0 };
+        let boxes: Vec<(DVec2, DVec2)> = (0..2000).map(|k| (at(k), at(k) + size(k))).collect();
+        let index = BoxIndex::new(boxes.clone());
+        assert!(!index.large.is_empty() && index.large.len() < boxes.len());
+        let overlap =
+            |a: (DVec2, DVec2), b: (DVec2, DVec2)| a.0.cmplt(b.1).all() && b.0.cmplt(a.1).all();
+        let (mut found, mut n_pairs) = (Vec::new(), 0);
+        for (number, &bounds) in boxes.iter().enumerate() {
+            index.overlapping(bounds, &mut found);
+            let all = (0..boxes.len() as u32).filter(|&k| overlap(bounds, boxes[k as usize]));
+            assert_eq!(found, all.collect::<Vec<_>>(), "{number}");
+            n_pairs += found.len() as u64 - 1;
+        }
+        assert!(index.has_more_pairs(n_pairs / 2 - 1) && !index.has_more_pairs(n_pairs / 2));
     }
 }

@@ -1,0 +1,43 @@
+//! Whether the output may be written where it is to go.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::cli::Refused;
+use crate::cli::paths::is_dash;
+
+/// Refuses an output that would replace one of the files that are read, whatever it is called there,
+/// and one in a folder that does not exist.
+///
+/// Found out before anything is computed. Where files are linked, the real ones are compared.
+pub(in crate::cli) fn check_place<P: AsRef<Path>>(
+    output: Option<&Path>,
+    inputs: impl IntoIterator<Item = P>,
+) -> Result<(), Refused> {
+    let Some(output) = output else { return Ok(()) };
+    let failed = |message: String| Refused::Failed(message.into());
+    let Ok(target) = fs::canonicalize(output) else {
+        return missing_folder(output).map_or(Ok(()), |folder| {
+            let (output, folder) = (output.display(), folder.display());
+            Err(failed(format!("cannot write {output}: there is no folder {folder}")))
+        });
+    };
+    let is_target = |input: &Path| fs::canonicalize(input).is_ok_and(|input| input == target);
+    for input in inputs {
+        let input = input.as_ref();
+        if !is_dash(input) && is_target(input) {
+            return Err(failed(format!(
+                "cannot write {}: {} is read from and would be replaced; give another -o FILE",
+                output.display(),
+                input.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The folder that a file is to be created in, if it is not there.
+pub(super) fn missing_folder(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty())?;
+    (!folder.is_dir()).then(|| folder.to_owned())
+}

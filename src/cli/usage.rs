@@ -1,0 +1,73 @@
+//! What clap is told about all options at once, and what its messages leave to be wished.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{ArgMatches, Command, CommandFactory};
+
+use super::Cli;
+
+/// Options of other programs that say how large a picture is.
+const SIZES: [&str; 5] = ["--width", "--height", "--size", "--resolution", "--pixels"];
+
+/// The command line with all that holds for every option.
+pub(super) fn command() -> Command {
+    Cli::command().mut_subcommands(|command| {
+        command.mut_args(|arg| {
+            // So that the parser of the value says what it expects, not clap that -5 is no option.
+            let is_option = arg.get_long().is_some() && arg.get_action().takes_values();
+            if is_option && !arg.is_allow_hyphen_values_set() {
+                arg.allow_negative_numbers(true)
+            } else {
+                arg
+            }
+        })
+    })
+}
+
+/// Parses what was typed; bad usage ends the program.
+pub(super) fn parse(command: &Command, typed: &[std::ffi::OsString]) -> ArgMatches {
+    let parsed = command.clone().try_get_matches_from(typed);
+    parsed.unwrap_or_else(|error| with_hints(error, command, typed).exit())
+}
+
+/// Ends the program as clap does for arguments that are wrong.
+pub(super) fn exit_with(name: &str, message: &str) -> ! {
+    let mut command = command();
+    command.build();
+    let mut command = command.find_subcommand(name).cloned().unwrap_or(command);
+    command.error(ErrorKind::ValueValidation, message).exit()
+}
+
+/// Says which option there is instead of an unknown one, where clap only knows how to make a file
+/// name of it.
+fn with_hints(
+    mut error: clap::Error,
+    command: &Command,
+    typed: &[std::ffi::OsString],
+) -> clap::Error {
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let Some(ContextValue::String(unknown)) = error.get(ContextKind::InvalidArg) else {
+        return error;
+    };
+    let mut words = typed.iter().filter_map(|word| word.to_str());
+    let command = words.find_map(|word| command.find_subcommand(word));
+    let has = |long: &str| {
+        command.is_some_and(|c| c.get_arguments().any(|arg| arg.get_long() == Some(long)))
+    };
+    let hint = match unknown.split('=').next().unwrap_or_default() {
+        size if SIZES.contains(&size) && has("png-width") => {
+            Some("the paper is set by '--page WIDTHxHEIGHT', the pixels of a PNG by '--png-width'")
+        }
+        size if SIZES.contains(&size) && has("size") => {
+            Some("the pixels are set by '--size WIDTHxHEIGHT'")
+        }
+        _ => None,
+    };
+    error.remove(ContextKind::Suggested);
+    if let Some(hint) = hint {
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint.into()]));
+    }
+    error
+}
