@@ -191,8 +191,10 @@ fn settings_hold_for_fill_and_preview() {
     assert!(typed.status.success() && set.status.success(), "{}", text(&set.stderr));
     let picture = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
     assert!(picture("typed.png") == picture("set.png"));
-    let unknown = run(&["fill", SPOT, "--preset", "nosuch"]);
-    assert_eq!(unknown.status.code(), Some(1));
+    for command in ["fill", "preview"] {
+        let unknown = run(&[command, SPOT, "--preset", "nosuch", "-o", "set.png"]);
+        assert_eq!(unknown.status.code(), Some(2), "{command}: {}", text(&unknown.stderr));
+    }
 }
 
 #[test]
