@@ -122,6 +122,9 @@ pub enum PreviewError {
     /// No pixels, or too many.
     #[error("a picture of {0} x {1} pixels cannot be made; sides are from 1 to 65536")]
     Size(u32, u32),
+    /// The painter was asked for.
+    #[error(transparent)]
+    NoOrder(#[from] painter::NoOrder),
     /// The stream failed.
     #[error(transparent)]
     Write(#[from] io::Error),
@@ -169,9 +172,9 @@ pub fn write(
         let size = (width * samples, height * samples);
         match options.pixels {
             Pixels::Centers(Engine::Painter) => painter::raster(scene, camera, &fine, size),
-            _ => Raster::new(scene, camera, &fine, size),
+            _ => Ok(Raster::new(scene, camera, &fine, size)),
         }
-    });
+    })?;
     let shader =
         timed(&mut seconds.classify, || Shader::new(scene, camera, &fine, &raster, options));
     let rows_of_strip = STRIP_ROWS / samples;

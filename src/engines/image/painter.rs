@@ -7,32 +7,41 @@
 //!
 //! Source: lecture notes on visibility (Slovak), section 3: Newell, Newell and Sancha's order with
 //! its tests and splits ([`depth_sort`]); scenes that would take too long to sort are ordered by a
-//! tree of planes ([`bsp`]), and those that have too many crossing faces for that, too, by the
-//! farthest corner of each triangle alone: then the picture may differ from that of the other engines
-//! where triangles cross or overlap in turn.
+//! tree of planes ([`bsp`]), and those that have too many crossing faces for that, too, are refused.
 //!
 //! Good for: a check of the order that fills are painted in; it keeps nothing but the order.
 
-use std::cmp::Reverse;
-
 use glam::DVec3;
+use thiserror::Error;
 
-use super::depth::Depth;
 use super::raster::{Corners, PixelMap, Raster, Strip, columns};
 use crate::engines::face::fragment::Easel;
 use crate::engines::face::{bsp, depth_sort};
 use crate::scene::Scene;
 use crate::view::Camera;
 
+/// The faces of a scene pierce each other too often to be put in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error(
+    "the faces pierce each other so often that the painter finds no order in reasonable time; \
+     take --engine z-buffer"
+)]
+pub struct NoOrder;
+
 /// The picture whose items are in the order of painting. O(triangles log triangles) usually; see
 /// [`depth_sort`].
-pub fn raster(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) -> Raster {
+///
+/// # Errors
+/// [`NoOrder`].
+pub fn raster(
+    scene: &Scene,
+    camera: &Camera,
+    map: &PixelMap,
+    size: (u32, u32),
+) -> Result<Raster, NoOrder> {
     let fragments = match depth_sort::order(scene, camera) {
         Ok((fragments, _)) => fragments,
-        Err(_) => match bsp::Tree::new(scene) {
-            Ok(tree) => tree.order(scene, camera),
-            Err(_) => return by_farthest_corner(scene, camera, map, size),
-        },
+        Err(_) => bsp::Tree::new(scene).map_err(|_| NoOrder)?.order(scene, camera),
     };
     let (easel, view) = (Easel::new(scene, camera), Corners::new(scene, camera));
     let mut triangles: Vec<([DVec3; 3], u32)> = Vec::with_capacity(fragments.len());
@@ -45,21 +54,7 @@ pub fn raster(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) 
             last = corner;
         }
     }
-    Raster::of_triangles(&triangles, size).seen_by(camera)
-}
-
-/// The order that Newell, Newell and Sancha begin with.
-fn by_farthest_corner(scene: &Scene, camera: &Camera, map: &PixelMap, size: (u32, u32)) -> Raster {
-    let view = Corners::new(scene, camera);
-    let mut triangles: Vec<([DVec3; 3], u32)> = (0..scene.triangles().len() as u32)
-        .flat_map(|number| view.pieces(number).into_iter().flatten().map(move |c| (c, number)))
-        .map(|(corners, number)| (corners.map(|corner| view.in_pixels(&corner, map)), number))
-        .collect();
-    let farthest = |corners: &[DVec3; 3]| {
-        Depth::of(corners.map(|c| c.z).into_iter().fold(f64::INFINITY, f64::min))
-    };
-    triangles.sort_by_key(|(corners, number)| (farthest(corners), Reverse(*number)));
-    Raster::of_triangles(&triangles, size).seen_by(camera)
+    Ok(Raster::of_triangles(&triangles, size).seen_by(camera))
 }
 
 /// Fills the `items` of a strip of a picture that [`raster`] made. O(pixels that its triangles cover).

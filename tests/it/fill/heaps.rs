@@ -1,10 +1,11 @@
 //! Many faces in one place: what would take too long is refused or left to another engine, and deep
 //! nesting does not depend on the stack.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use hiddenline::engines::face::{
     Engine, FaceError, Prepared, Settings, Work, depth_sort, weiler_atherton,
 };
+use hiddenline::engines::image::{PixelMap, painter};
 use hiddenline::mesh::{Mesh, PolygonSoup};
 use hiddenline::scene::Scene;
 use hiddenline::view::{Camera, Projection};
@@ -64,6 +65,9 @@ fn heaps_are_left_to_windows_and_other_engines_say_so_at_once() {
     let error = sorted.solve(&from_above(), &COARSE).unwrap_err();
     assert!(matches!(error, FaceError::NoOrder(depth_sort::Error::TooManyPiercings(_))));
     assert!(error.to_string().ends_with("take --engine warnock"), "{error}");
+    let map = PixelMap::fitting((DVec2::splat(-9.0), DVec2::splat(9.0)), (64, 64), 1.0);
+    let painted = painter::raster(&heap, &from_above(), &map, (64, 64));
+    assert!(matches!(painted, Err(painter::NoOrder)));
 }
 
 #[test]

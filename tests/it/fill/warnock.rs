@@ -64,7 +64,7 @@ fn the_example_is_the_picture_of_the_image_space_engines() {
     let raster = Raster::new(&scene, &camera, &map, (16, 16));
     for engine in image::Engine::ALL {
         let raster = match engine {
-            image::Engine::Painter => painter::raster(&scene, &camera, &map, (16, 16)),
+            image::Engine::Painter => painter::raster(&scene, &camera, &map, (16, 16)).unwrap(),
             _ => raster.clone(),
         };
         for (at, item) in (0..).zip(image::solve(&raster, engine)) {

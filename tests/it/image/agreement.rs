@@ -108,7 +108,7 @@ fn painted_otherwise(
     size: (u32, u32),
 ) -> (usize, usize) {
     let (map, raster) = fitted(scene, camera, size);
-    let painted = painter::raster(scene, camera, &map, size);
+    let painted = painter::raster(scene, camera, &map, size).unwrap();
     let (expected, found) = (solve(&raster, Engine::ZBuffer), solve(&painted, Engine::Painter));
     let shown = expected.iter().filter(|&&item| item != NOTHING).count();
     let mut n_differing = 0;
