@@ -57,9 +57,9 @@ use crate::view::Camera;
 /// More faces (triangles, of bent ones) in the image than this are refused.
 pub const MOST_FACES: usize = 10_000;
 
-/// More pairs of faces whose boxes overlap in the image than this are refused. Meshes of
-/// [`MOST_FACES`] have some 100,000; where most of the pairs cross, so many take half a minute.
-pub const MOST_PAIRS: u64 = 300_000;
+/// More pairs of faces whose boxes overlap in the image than this are refused. Assemblies of thin
+/// parts have half as many and take seconds; where most of the pairs cross, so many take minutes.
+pub const MOST_PAIRS: u64 = 1_000_000;
 
 /// Polygons that one piece of parallel work compares with the first one, at least.
 const MIN_LEN: usize = 8;

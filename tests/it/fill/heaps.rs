@@ -72,7 +72,7 @@ fn heaps_are_left_to_windows_and_other_engines_say_so_at_once() {
 
 #[test]
 fn planes_that_all_overlap_are_left_to_windows() {
-    let planes = tangents(800);
+    let planes = tangents(1500);
     let named = Prepared::new(&planes, Engine::WeilerAtherton).unwrap();
     let error = named.solve(&from_above(), &COARSE).unwrap_err();
     assert!(matches!(error, FaceError::TooManyPairs { .. }), "{error}");
