@@ -156,7 +156,7 @@ mod tests {
             (DVec2::new(500.0, 0.0), DVec2::new(400.0, 9.0)),
             (DVec2::new(-5.0, 0.0), DVec2::new(-1.0, 9.0)),
         ] {
-            let edge = PixelEdge::new(a, b).unwrap();
+            let edge = PixelEdge::new(a, b).expect("not level");
             for row in 0..9 {
                 let column = (0..width).find(|&column| edge.has_on_right(column, row));
                 let column = column.unwrap_or(width);
