@@ -78,7 +78,7 @@ fn planes_that_all_overlap_are_left_to_windows() {
     assert!(matches!(error, FaceError::TooManyPairs { .. }), "{error}");
     let free = Prepared::new(&planes, Engine::Auto).unwrap();
     let (painting, work) = free.solve(&from_above(), &COARSE).unwrap();
-    assert!(matches!(work, Work::Warnock(_)) && painting.len() > 0);
+    assert!(matches!(work, Work::Warnock(_)) && !painting.is_empty());
     assert_eq!(work.engine(), Engine::Warnock);
 }
 
