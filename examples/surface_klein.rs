@@ -1,5 +1,6 @@
 //! A Klein bottle, the surface with one side, by the lines of its two parameters.
 
+mod lined_surface;
 mod parameter_lines;
 mod plots;
 mod viewpoint;

@@ -1,14 +1,14 @@
 //! A saddle: the plane curves up along y and down along x.
 
-mod grid_lines;
+mod lined_surface;
 mod plots;
 mod viewpoint;
 
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::plot::Plot;
-use hiddenline::surface::Grid;
+use hiddenline::surface::{Grid, LinedMesh};
 
-use grid_lines::grid_plot;
+use lined_surface::{lined_plot, net};
 use plots::{Result, save};
 use viewpoint::seen_from;
 
@@ -18,7 +18,9 @@ pub(crate) fn plot() -> Result<Plot> {
     // Sampled finely for smooth curves.
     let mut grid = Grid::sample(&formula, range, range, (161, 161))?;
     grid.scale_heights(0.45);
-    grid_plot("Saddle", &grid, 8, seen_from(-55.0, 24.0))
+    let mut mesh = LinedMesh::default();
+    mesh.push_grid(&grid, &net(8));
+    lined_plot("Saddle", mesh, seen_from(-55.0, 24.0))
 }
 
 fn main() -> Result<()> {

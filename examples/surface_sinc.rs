@@ -1,14 +1,14 @@
 //! A hat: sin r / r.
 
-mod grid_lines;
+mod lined_surface;
 mod plots;
 mod viewpoint;
 
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::plot::Plot;
-use hiddenline::surface::Grid;
+use hiddenline::surface::{Grid, LinedMesh};
 
-use grid_lines::grid_plot;
+use lined_surface::{lined_plot, net};
 use plots::{Result, save};
 use viewpoint::seen_from;
 
@@ -18,7 +18,9 @@ pub(crate) fn plot() -> Result<Plot> {
     // Sampled finely for smooth curves.
     let mut grid = Grid::sample(&formula, range, range, (241, 241))?;
     grid.scale_heights(8.0);
-    grid_plot("Sinc hat", &grid, 4, seen_from(-60.0, 28.0))
+    let mut mesh = LinedMesh::default();
+    mesh.push_grid(&grid, &net(4));
+    lined_plot("Sinc hat", mesh, seen_from(-60.0, 28.0))
 }
 
 fn main() -> Result<()> {

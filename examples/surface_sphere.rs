@@ -1,5 +1,6 @@
 //! A sphere by meridians and circles of latitude.
 
+mod lined_surface;
 mod parameter_lines;
 mod plots;
 mod viewpoint;

@@ -1,14 +1,14 @@
 //! Spikes that stand in front of each other.
 
-mod grid_lines;
+mod lined_surface;
 mod plots;
 mod viewpoint;
 
 use hiddenline::formula::{Formula, Variables};
 use hiddenline::plot::Plot;
-use hiddenline::surface::Grid;
+use hiddenline::surface::{Grid, LinedMesh};
 
-use grid_lines::grid_plot;
+use lined_surface::{lined_plot, net};
 use plots::{Result, save};
 use viewpoint::seen_from;
 
@@ -19,7 +19,9 @@ pub(crate) fn plot() -> Result<Plot> {
     // Sampled finely for smooth curves.
     let mut grid = Grid::sample(&formula, range, range, (301, 301))?;
     grid.scale_heights(5.0);
-    grid_plot("Spikes", &grid, 5, seen_from(-65.0, 22.0))
+    let mut mesh = LinedMesh::default();
+    mesh.push_grid(&grid, &net(5));
+    lined_plot("Spikes", mesh, seen_from(-65.0, 22.0))
 }
 
 fn main() -> Result<()> {

@@ -1,13 +1,13 @@
 //! A landscape made of smooth noise, finer and lower from octave to octave.
 
-mod grid_lines;
+mod lined_surface;
 mod plots;
 mod viewpoint;
 
 use hiddenline::plot::Plot;
-use hiddenline::surface::{Grid, evenly};
+use hiddenline::surface::{Grid, LinedMesh, evenly};
 
-use grid_lines::grid_plot;
+use lined_surface::{lined_plot, net};
 use plots::{Result, save};
 use viewpoint::seen_from;
 
@@ -52,7 +52,9 @@ pub(crate) fn plot() -> Result<Plot> {
     let at = evenly(0.0, CELLS, n);
     let zs = at.iter().flat_map(|&y| at.iter().map(move |&x| 0.42 * height(x, y))).collect();
     let grid = Grid::new(at.clone(), at, zs)?;
-    grid_plot("Landscape", &grid, 2, seen_from(-70.0, 36.0))
+    let mut mesh = LinedMesh::default();
+    mesh.push_grid(&grid, &net(2));
+    lined_plot("Landscape", mesh, seen_from(-70.0, 36.0))
 }
 
 fn main() -> Result<()> {

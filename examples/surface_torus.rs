@@ -1,5 +1,6 @@
 //! A torus by its circles; the lines at its folds close it.
 
+mod lined_surface;
 mod parameter_lines;
 mod plots;
 mod viewpoint;
