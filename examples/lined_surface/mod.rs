@@ -29,6 +29,7 @@ pub(crate) fn lined_plot(title: &str, mesh: LinedMesh, framing: Framing) -> Resu
         engine: Engine::Auto,
         folds: true,
         border: false,
+        intersections: false,
         exact: false,
         underside: false,
         apart_by_kind: false,

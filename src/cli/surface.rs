@@ -19,7 +19,7 @@ use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
-use hiddenline::surface::{Grid, LatticeLines};
+use hiddenline::surface::{Grid, LatticeLines, LinedScene};
 use hiddenline::view::{Camera, Projection};
 use hiddenline::writers::Format;
 
@@ -53,6 +53,7 @@ pub(super) struct Job {
     lines: Lines,
     levels: Option<Levels>,
     folds: bool,
+    intersections: bool,
     border: bool,
     all_edges: bool,
     engine: EngineName,
@@ -154,7 +155,7 @@ fn without_levels(
         _ => return Ok(None),
     };
     let draws_more = job.lines.along_x || job.lines.along_y;
-    if draws_more || job.folds || job.border || job.all_edges {
+    if draws_more || job.folds || job.border || job.intersections || job.all_edges {
         Ok(Some(message))
     } else {
         Err(format!("{message}; --lines both draws grid lines"))
@@ -256,7 +257,9 @@ fn draw_by_mesh(
             too_many(mesh.n_pieces_with_levels(&heights)).map_or(Ok(()), Err)?;
             mesh.add_levels(&heights);
         }
-        Ok(mesh.into_scene()?)
+        let LinedScene { scene, lines } = mesh.into_scene()?;
+        let scene = if job.intersections { scene.with_intersections() } else { scene };
+        Ok(LinedScene { scene, lines })
     })?;
     stats.seconds = seconds;
     let options = meshed::MeshedOptions {
@@ -266,6 +269,7 @@ fn draw_by_mesh(
             EngineName::Auto | EngineName::MaxMin | EngineName::FloatingHorizon => Engine::Auto,
         },
         folds: job.folds,
+        intersections: job.intersections,
         border: job.border,
         exact: job.lines.separate,
         underside: job.underside,

@@ -73,8 +73,8 @@ struct LineArgs {
     /// Lines to draw, with commas between them [default: both, but mesh with --points]
     ///
     /// x: grid lines along x (or u); y: along y (or v); both; levels: curves of equal height;
-    /// silhouette: where the surface folds away from the eye; border: its edges; mesh: all edges of
-    /// its triangles.
+    /// silhouette: where the surface folds away from the eye; border: its edges; intersection: where
+    /// sheets cross; mesh: all edges of its triangles.
     #[arg(long, value_enum, value_delimiter = ',')]
     lines: Vec<LineName>,
     /// Level curves: how many, evenly spaced between the lowest and the highest point, or their
@@ -135,6 +135,7 @@ enum LineName {
     Both,
     Levels,
     Silhouette,
+    Intersection,
     Border,
     Mesh,
 }
@@ -240,6 +241,7 @@ impl SurfaceArgs {
             levels: has(LineName::Levels)
                 .then(|| lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS))),
             folds: has(LineName::Silhouette),
+            intersections: has(LineName::Intersection),
             border: has(LineName::Border),
             all_edges: has(LineName::Mesh),
             engine: lines.engine,

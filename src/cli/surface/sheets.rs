@@ -150,8 +150,12 @@ impl Surface {
 
     fn candidate(&self, job: &Job) -> Option<&Grid> {
         let has_grid_lines = job.lines.along_x || job.lines.along_y;
-        let needs_mesh =
-            job.levels.is_some() || job.folds || job.border || job.all_edges || !has_grid_lines;
+        let needs_mesh = job.levels.is_some()
+            || job.folds
+            || job.border
+            || job.intersections
+            || job.all_edges
+            || !has_grid_lines;
         match (self, job.engine) {
             (_, EngineName::Roberts | EngineName::Appel) => None,
             (Self::Grids(grids), EngineName::Auto | EngineName::MaxMin) => {

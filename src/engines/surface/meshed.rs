@@ -24,6 +24,9 @@ pub struct MeshedOptions {
     pub folds: bool,
     /// Edges with only one triangle, too.
     pub border: bool,
+    /// Lines in which sheets cross, too, as far as the scene knows them, and edges that they share
+    /// there; see [`Scene::with_intersections`](crate::scene::Scene::with_intersections).
+    pub intersections: bool,
     /// One two-point stroke for each maximal visible interval of each edge.
     pub exact: bool,
     /// Keep lines on the underside apart, that is where the triangles' backs are seen.
@@ -49,9 +52,12 @@ pub fn draw(
     let view = timed(&mut stats.seconds.classify, || {
         let mut edges = lines.clone();
         let mut selection = LineSelection::NONE;
-        for (is_wanted, kind) in
-            [(options.folds, StrokeKind::Silhouette), (options.border, StrokeKind::Boundary)]
-        {
+        for (is_wanted, kind) in [
+            (options.folds, StrokeKind::Silhouette),
+            (options.border, StrokeKind::Boundary),
+            (options.intersections, StrokeKind::Intersection),
+            (options.intersections, StrokeKind::Nonmanifold),
+        ] {
             if is_wanted {
                 selection = selection.with(kind);
             }
@@ -81,6 +87,8 @@ pub fn draw(
     stats.faces = scene.mesh().n_faces();
     stats.triangles = scene.triangles().len();
     stats.edges = scene.topology().edges().len();
+    stats.intersections = scene.intersections().lines().len();
+    stats.counts.intersection_pairs = scene.intersections().n_pairs();
     stats.drawn_edges = view.drawn().len();
     stats.counts.candidate_pairs = counts.candidate_pairs;
     stats.counts.exact_predicates = view.sight().n_exact() + n_exact;

@@ -366,3 +366,22 @@ fn max_min_by_choice_draws_more_than_grid_lines() {
     let message = "max-min draws one surface z = f(x, y) without holes";
     fails(&folder, &["--grid", "heights", "--engine", "max-min"], 1, message);
 }
+
+#[test]
+fn sheets_show_where_they_cross() {
+    let folder = with_file("");
+    // Across cells, and along edges of both sheets.
+    for samples in ["4", "5"] {
+        let (strokes, _) = drawn(
+            &folder,
+            &["x", "(-x)", "--samples", samples, "--lines", "intersection", "--view", "top"],
+        );
+        let [stroke] = &strokes[..] else { panic!("{samples} samples: {strokes:?}") };
+        let points = stroke["points"].as_array().expect("points");
+        let ends =
+            [0, points.len() - 1].map(|k| [0, 1].map(|i| points[k][i].as_f64().expect("a number")));
+        assert!(ends.iter().all(|end| end[0].abs() < 1e-12), "{samples} samples: {ends:?}");
+        let length = (ends[0][1] - ends[1][1]).abs();
+        assert!((length - 10.0).abs() < 1e-12, "{samples} samples: {length}");
+    }
+}
