@@ -142,9 +142,6 @@ impl<'a, S: Samples> Strip<'a, S> {
     pub(super) fn visit_cell(&mut self, cell: &Cell, far_edges: Option<[u32; 2]>) -> bool {
         self.keep_steps();
         let Cell { near, right, left, far, .. } = *cell;
-        let margin = 4.0 * self.plane.du;
-        let far_edges =
-            far_edges.filter(|_| left.u > self.from + margin && right.u < self.to - margin);
         let horizons = [(&mut self.upper, UPPER), (&mut self.lower, LOWER)];
         for ((horizon, seen), is_settled) in horizons.into_iter().zip(&mut self.is_settled) {
             let Some(horizon) = horizon else {

@@ -18,8 +18,9 @@ use crate::engines::surface::segment::{
 impl Horizon {
     /// Moves the horizon from a cell's near edges to its far ones, if it lies on the near ones and
     /// the far ones are surely beyond; then both are wholly visible. Otherwise nothing is done, and
-    /// the cell's segments must be added one by one. No corner may lie on or outside the strip's
-    /// border, and none at the u of another but near and far.
+    /// the cell's segments must be added one by one. No corner may lie at the u of another but near
+    /// and far. A cell that the strip's border cuts has no break of the horizon there, so it is left
+    /// alone.
     ///
     /// Between left and right, the far edges less the near ones are a function that is straight but
     /// at near and far, so it is positive where it is so at both. A diagonal from near to far lies
