@@ -7,8 +7,9 @@ use glam::DVec2;
 /// Cells along each side, at most.
 const MOST_CELLS: usize = 256;
 
-/// Boxes that reach more cells than this are listed apart.
-const MOST_REACHED: usize = 64;
+/// Boxes that reach more cells than so many rows of the grid have are listed apart: they are large in
+/// both directions. Long thin ones are not.
+const MOST_ROWS: usize = 4;
 
 /// Boxes by the cells of the image that they reach.
 pub(crate) struct BoxIndex {
@@ -34,7 +35,7 @@ impl BoxIndex {
         let mut index = Self { low, cell, n, cells, large: Vec::new(), boxes };
         for number in 0..index.boxes.len() {
             let (xs, ys) = index.reached(index.boxes[number]);
-            if xs.len() * ys.len() > MOST_REACHED {
+            if xs.len() * ys.len() > MOST_ROWS * n {
                 index.large.push(number as u32);
                 continue;
             }
@@ -71,7 +72,7 @@ impl BoxIndex {
             low.cmplt(bounds.1).all() && bounds.0.cmplt(high).all()
         };
         let (xs, ys) = self.reached(bounds);
-        if xs.len() * ys.len() > MOST_REACHED {
+        if xs.len() * ys.len() > MOST_ROWS * self.n {
             found.extend((0..self.boxes.len() as u32).filter(overlaps));
             return;
         }
