@@ -5,6 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::engines::face::Work;
+use crate::scene::Scene;
 
 /// Counts and times of one run, serialized with fixed key names.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -106,6 +107,18 @@ pub struct Counts {
     /// What the face engine counted, where areas are filled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fill: Option<Work>,
+}
+
+impl Stats {
+    /// Counts what the scene is made of.
+    pub fn count(&mut self, scene: &Scene) {
+        self.vertices = scene.mesh().positions().len();
+        self.faces = scene.mesh().n_faces();
+        self.triangles = scene.triangles().len();
+        self.edges = scene.topology().edges().len();
+        self.intersections = scene.intersections().lines().len();
+        self.counts.intersection_pairs = scene.intersections().n_pairs();
+    }
 }
 
 /// Does `work` and adds its wall time to `seconds`.

@@ -17,7 +17,7 @@ use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
 use super::paper::Run;
-use super::scene::{Subject, count};
+use super::scene::Subject;
 use super::{Refused, config, source};
 
 const EXAMPLES: &str = "\
@@ -106,7 +106,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         Page::new(drawing, &camera, &job.page).map_or(1.0, |page| page.mm_per_image_unit())
     };
     let drawing = draw(&scene, &camera, &job.draw, mm_per_unit, &mut run.stats);
-    count(&mut run.stats, &scene);
+    run.stats.count(&scene);
     run.stats.strokes = drawing.len();
     run.stats.points = drawing.n_points();
     drop(scene);

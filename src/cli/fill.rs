@@ -29,7 +29,7 @@ use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
 use super::paper::Run;
 use super::progress::Progress;
-use super::scene::{Subject, count};
+use super::scene::Subject;
 use super::surface::DEFAULT_SAMPLES;
 use super::{Refused, config, source, values};
 
@@ -173,7 +173,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     }
     let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))?;
     run.stats.engine = prepared.engine().name();
-    count(&mut run.stats, &scene);
+    run.stats.count(&scene);
     let Some(n) = job.turntable else {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());

@@ -21,7 +21,7 @@ use super::output::check_place;
 use super::paper::start_threads;
 use super::paths::is_dash;
 use super::progress::Progress;
-use super::scene::{Subject, count};
+use super::scene::Subject;
 use super::{Refused, messages, output};
 
 const EXAMPLES: &str = "\
@@ -167,7 +167,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         ));
     }
     if job.stats {
-        count(&mut stats, &scene);
+        stats.count(&scene);
         stats.strokes = edges.as_ref().map_or(0, |edges| edges.len());
         stats.points = edges.as_ref().map_or(0, |edges| edges.n_points());
         stats.peak_bytes = peak_bytes();

@@ -44,13 +44,3 @@ impl Subject {
         Ok(Self { scene, camera, notes })
     }
 }
-
-/// Counts what the scene is made of.
-pub(super) fn count(stats: &mut Stats, scene: &Scene) {
-    stats.vertices = scene.mesh().positions().len();
-    stats.faces = scene.mesh().n_faces();
-    stats.triangles = scene.triangles().len();
-    stats.edges = scene.topology().edges().len();
-    stats.intersections = scene.intersections().lines().len();
-    stats.counts.intersection_pairs = scene.intersections().n_pairs();
-}

@@ -83,12 +83,7 @@ pub fn draw(
         }
     });
     stats.engine = engine;
-    stats.vertices = scene.mesh().positions().len();
-    stats.faces = scene.mesh().n_faces();
-    stats.triangles = scene.triangles().len();
-    stats.edges = scene.topology().edges().len();
-    stats.intersections = scene.intersections().lines().len();
-    stats.counts.intersection_pairs = scene.intersections().n_pairs();
+    stats.count(scene);
     stats.drawn_edges = view.drawn().len();
     stats.counts.candidate_pairs = counts.candidate_pairs;
     stats.counts.exact_predicates = view.sight().n_exact() + n_exact;
