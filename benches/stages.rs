@@ -10,20 +10,20 @@ use divan::{Bencher, black_box};
 use glam::{DVec3, dvec3};
 use libm::{cos, sin};
 
+use hiddenline::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
 use hiddenline::chain::{ChainOptions, chain};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::HiddenLines;
 use hiddenline::engines::edge::{Engine, Settings, solve};
 use hiddenline::engines::image::raster::Corners;
 use hiddenline::engines::image::{self, PixelMap, Raster};
-use hiddenline::mesh::Mesh;
+use hiddenline::model::mesh::Mesh;
+use hiddenline::model::scene::Scene;
+use hiddenline::model::topology::Topology;
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::read::{ModelFormat, read_bytes};
-use hiddenline::scene::Scene;
 use hiddenline::strokes::StrokeKind;
-use hiddenline::topology::Topology;
-use hiddenline::view::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
-use hiddenline::writers::svg::{self, StrokeElement};
+use hiddenline::write::svg::{self, StrokeElement};
 
 fn main() {
     divan::main();

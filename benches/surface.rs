@@ -2,10 +2,10 @@
 
 use divan::Bencher;
 use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
-use hiddenline::formula::{Formula, Variables};
 use hiddenline::surface::Grid;
-use hiddenline::view::{Camera, Projection};
+use hiddenline::surface::formula::{Formula, Variables};
 
 const SIZES: [usize; 4] = [150, 500, 1000, 2000];
 

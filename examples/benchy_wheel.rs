@@ -5,8 +5,8 @@ mod sheet;
 
 use std::path::Path;
 
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::draw::{DrawOptions, HiddenLines};
-use hiddenline::framing::{Framing, Standpoint};
 use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;

@@ -5,9 +5,9 @@ mod sheet;
 
 use glam::{DVec3, dvec3};
 
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::draw::DrawOptions;
-use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::{PageOptions, Placement};
 use hiddenline::plot::Plot;
 

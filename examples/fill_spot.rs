@@ -4,14 +4,14 @@ mod plots;
 
 use std::path::Path;
 
-use hiddenline::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, fill};
-use hiddenline::framing::{Framing, Standpoint};
+use hiddenline::model::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::model::scene::Scene;
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;
-use hiddenline::scene::Scene;
+use hiddenline::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, fill};
 use hiddenline::stats::Stats;
 
 use plots::{Result, plot_options, save};

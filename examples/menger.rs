@@ -5,9 +5,9 @@ mod sheet;
 
 use glam::DVec3;
 
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::draw::DrawOptions;
-use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 

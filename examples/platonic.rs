@@ -5,9 +5,9 @@ mod sheet;
 
 use glam::{DQuat, DVec3, dvec3};
 
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::draw::{DrawOptions, HiddenLines};
-use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::{PageOptions, Paper};
 use hiddenline::plot::Plot;
 

@@ -8,9 +8,9 @@ use std::f64::consts::TAU;
 use glam::{DVec3, dvec3};
 use libm::{cos, sin};
 
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::draw::DrawOptions;
-use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::{PageOptions, Placement};
 use hiddenline::plot::Plot;
 

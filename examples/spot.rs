@@ -5,10 +5,10 @@ mod sheet;
 
 use std::path::Path;
 
-use hiddenline::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::DrawOptions;
-use hiddenline::framing::{Framing, Standpoint};
+use hiddenline::model::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;

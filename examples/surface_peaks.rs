@@ -4,13 +4,13 @@ mod plots;
 
 use glam::dvec3;
 
-use hiddenline::dressing::{Titles, dress};
+use hiddenline::axes::{Titles, dress};
+use hiddenline::camera::framing::Framing;
 use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
-use hiddenline::formula::{Formula, Variables};
-use hiddenline::framing::Framing;
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::surface::Grid;
+use hiddenline::surface::formula::{Formula, Variables};
 
 use plots::{Result, plot_options, save};
 

@@ -4,8 +4,8 @@ mod lined_surface;
 mod plots;
 mod viewpoint;
 
-use hiddenline::formula::{Formula, Variables};
 use hiddenline::plot::Plot;
+use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{Grid, LinedMesh};
 
 use lined_surface::{lined_plot, net};

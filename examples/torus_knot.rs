@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use libm::{cos, sin};
 
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::DrawOptions;
-use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::page::PageOptions;
 use hiddenline::plot::Plot;
 

@@ -14,8 +14,8 @@
 
 use crate::classify::ViewedScene;
 use crate::engines::edge::outline::Outline;
+use crate::engines::visibility::{Span, Visibility};
 use crate::strokes::{Drawing, StrokeKind};
-use crate::visibility::{Span, Visibility};
 use glam::DVec2;
 use rayon::prelude::*;
 

@@ -13,19 +13,19 @@
 //! | mesh | any | |
 //! | intersection | none | the line in which two faces cross |
 //!
-//! A bend of a face, where the scene knows of any (see [`crate::bends`]), is a silhouette where one
+//! A bend of a face, where the scene knows of any (see [`crate::model::bends`]), is a silhouette where one
 //! of the triangles along it faces the eye and the other does not.
 //!
 //! Two uses that run the same way mean that the faces are wound against each other; the second
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
 
-use crate::mesh::Mesh;
+use crate::camera::{Camera, Frame, Projection};
+use crate::model::mesh::Mesh;
+use crate::model::scene::Scene;
+use crate::model::topology::EdgeUse;
+use crate::model::triangulate::newell_normal;
 use crate::predicates::{Sight, Sign, exact};
-use crate::scene::Scene;
 use crate::strokes::StrokeKind;
-use crate::topology::EdgeUse;
-use crate::triangulate::newell_normal;
-use crate::view::{Camera, Frame, Projection};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -107,7 +107,7 @@ impl Default for LineSelection {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DrawnEdge {
     /// Its number in the topology, or that of a line of intersection; see
-    /// [`Scene::line`](crate::scene::Scene::line).
+    /// [`Scene::line`](crate::model::scene::Scene::line).
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,

@@ -1,12 +1,12 @@
 //! From a scene and a camera to strokes: the stages between, in order.
 
+use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain, shortest};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{Engine, Settings, outline, solve};
-use crate::scene::Scene;
+use crate::model::scene::Scene;
 use crate::stats::{Stats, timed};
 use crate::strokes::Drawing;
-use crate::view::Camera;
 
 /// The default contact tolerance as a part of the largest coordinate: twice the spacing of single
 /// precision numbers, which most model files are written in.
@@ -102,7 +102,7 @@ impl DrawOptions {
 /// Draws `scene` as `camera` sees it; counts and times go to `stats`.
 ///
 /// Lines of intersection are drawn when the scene has them; see
-/// [`Scene::with_intersections`](crate::scene::Scene::with_intersections).
+/// [`Scene::with_intersections`](crate::model::scene::Scene::with_intersections).
 ///
 /// `mm_per_unit` tells how many millimetres on paper an image unit becomes for a drawing with the
 /// given, not yet joined, strokes. It is asked only when short strokes are to be dropped.

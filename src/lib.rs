@@ -1,36 +1,34 @@
 //! Exact hidden-line drawings of 3D models and surfaces, for print and pen plotters.
 //!
 //! ```text
-//!  model files            formulas, height files
-//!       │                          │
-//!     read ─► mesh, arrange     formula, surface ──────────┐
-//!                  │               │ (as a mesh)           │
-//!                  ▼               ▼                       ▼
-//!                scene ◄───────────┘                engines::surface
-//!       topology, triangulate,                      horizons over a grid
-//!           intersections, bends                           │
-//!                  │                                       │
-//!   view ──────► classify ─► engines::edge ─► visibility   │
-//!   framing    faces, edges  what is hidden   spans of qi  │
-//!      │                                           │       │
-//!      ├───────► engines::face                   chain     │
-//!      │         regions of faces                  ▼       ▼
-//!      ▼               │                        strokes: polylines in the image
-//!    light ─────────► fill                         │
-//!                 colored areas ──────────────► page: placement on paper
-//!                                                  ▼
-//!  line SVG ─► line_svg ──────────────────────► plot: millimetres, a layer a pen
-//!                                                  │
-//!                                               optimize: joined, in short order
-//!                                                  ▼
-//!                                               writers ─► bytes
+//!  model files           formulas, height files
+//!       │                        │
+//!     read                    surface ─────────────┐
+//!       ▼                        │ (as a mesh)     ▼
+//!     model ◄────────────────────┘          engines::surface
+//!       scene: mesh, topology,              horizons over a grid
+//!       triangles, intersections                   │
+//!       │                                          │
+//!  camera ─► classify ─► engines::edge             │
+//!       │    faces,      spans of quantitative     │
+//!       │    edges       invisibility              │
+//!       │                    │                     │
+//!       ├─► engines::face  chain                   │
+//!       │   visible areas    ▼                     ▼
+//!       ▼        │       strokes: polylines in the image ◄─ axes
+//!    shading ────┘               │
+//!    fill, preview ───────────► page: placement on paper
+//!                                ▼
+//!  line SVG ─► read_svg ──────► plot: millimeters, one layer per pen
+//!                                │
+//!                             optimize: joined and ordered
+//!                                ▼
+//!                             write ─► bytes
 //! ```
 //!
-//! Beside it goes a quick way to a picture: [`engines::image`] says which face each pixel shows,
-//! [`preview`] shades it.
-//!
 //! [`draw`] runs the stages from scene to strokes; [`predicates`] make every decision on the way.
-//! To read the code, take the modules in the order below.
+//! [`engines::image`] finds the face that each pixel shows; [`shading::preview`] shades it. To read
+//! the code, take the modules in the order below.
 //!
 //! # What is exact
 //!
@@ -45,60 +43,38 @@
 //! World: model units, right-handed, z up. Image: see [`view`]. Page: millimetres, see [`plot`].
 //! Angles are in radians unless a name ends in `_deg`.
 
-pub mod read;
-
-pub mod formula;
-
-pub mod surface;
-
-pub mod mesh;
-
-pub mod arrange;
-
-pub mod topology;
-
-pub mod triangulate;
+pub mod camera;
 
 pub mod predicates;
 
-pub mod intersections;
+pub mod model;
 
-pub mod bends;
-
-pub mod scene;
-
-pub mod view;
-
-pub mod light;
-
-pub mod classify;
-
-pub mod framing;
-
-pub mod visibility;
-
-pub mod engines;
+pub mod read;
 
 pub mod strokes;
 
-pub mod dressing;
+pub mod surface;
+
+pub mod classify;
+
+pub mod engines;
 
 pub mod chain;
 
+pub mod axes;
+
 pub mod draw;
+
+pub mod shading;
 
 pub mod plot;
 
-pub mod fill;
-
-pub mod line_svg;
+pub mod page;
 
 pub mod optimize;
 
-pub mod page;
+pub mod read_svg;
 
-pub mod writers;
-
-pub mod preview;
+pub mod write;
 
 pub mod stats;

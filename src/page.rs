@@ -21,11 +21,11 @@ mod pens;
 use glam::{DAffine2, DMat2, DVec2};
 use thiserror::Error;
 
+use crate::camera::{Camera, Projection};
 use crate::draw::HiddenLines;
-use crate::fill::Filled;
 use crate::plot::{Layer, Pen, Plot};
+use crate::shading::fill::Filled;
 use crate::strokes::Drawing;
-use crate::view::{Camera, Projection};
 
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::engines::face::Work;
-use crate::scene::Scene;
+use crate::model::scene::Scene;
 
 /// Counts and times of one run, serialized with fixed key names.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

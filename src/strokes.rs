@@ -68,7 +68,7 @@ pub struct Stroke<'a> {
     pub points: &'a [DVec2],
 }
 
-/// Strokes in image coordinates (see [`crate::view`]), in a fixed order.
+/// Strokes in image coordinates (see [`crate::camera`]), in a fixed order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Drawing {
     points: Vec<DVec2>,

@@ -1,9 +1,9 @@
 //! A surface by its lines, closed by its folds, on a sheet of the usual size.
 
+use hiddenline::camera::framing::Framing;
 use hiddenline::draw::DEFAULT_SHORTEST_STROKE_MM;
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::meshed::{MeshedOptions, draw};
-use hiddenline::framing::Framing;
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::stats::Stats;

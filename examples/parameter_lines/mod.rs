@@ -1,7 +1,7 @@
 //! A surface in space on a sheet of the usual size.
 
 use glam::DVec3;
-use hiddenline::framing::Framing;
+use hiddenline::camera::framing::Framing;
 use hiddenline::plot::Plot;
 use hiddenline::surface::{LinedMesh, close_seams};
 

@@ -8,8 +8,8 @@ use std::path::Path;
 use hiddenline::draw::HiddenLines;
 use hiddenline::page::{Dash, PlotOptions};
 use hiddenline::plot::Plot;
-use hiddenline::writers::png::{self, Resolution};
-use hiddenline::writers::svg::{self, StrokeElement};
+use hiddenline::write::png::{self, Resolution};
+use hiddenline::write::svg::{self, StrokeElement};
 
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn Error>>;
 

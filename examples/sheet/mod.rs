@@ -1,11 +1,11 @@
 //! A mesh on a sheet of paper.
 
+use hiddenline::camera::framing::Framing;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::framing::Framing;
-use hiddenline::mesh::Mesh;
+use hiddenline::model::mesh::Mesh;
+use hiddenline::model::scene::Scene;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::plot::Plot;
-use hiddenline::scene::Scene;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::Drawing;
 

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use hiddenline::framing::{
+use hiddenline::camera::framing::{
     DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, NamedView, ProjectionKind, Standpoint,
 };
-use hiddenline::view::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR};
-use hiddenline::writers::json;
+use hiddenline::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR};
+use hiddenline::write::json;
 
 use super::paths::is_dash;
 use super::values;

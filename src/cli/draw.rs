@@ -9,7 +9,7 @@ use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::optimize::Options;
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::strokes::Drawing;
-use hiddenline::writers::Format;
+use hiddenline::write::Format;
 
 use self::lines::LineArgs;
 use super::camera::{CameraArgs, ViewSource};

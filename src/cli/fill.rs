@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::{DMat3, DVec2};
+use hiddenline::camera::Camera;
+use hiddenline::camera::framing::sin_cos_deg;
 use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::face::Prepared;
 use hiddenline::engines::image::raster::Corners;
-use hiddenline::fill::{FillOptions, Filled, fill_prepared};
-use hiddenline::framing::sin_cos_deg;
+use hiddenline::model::scene::Scene;
 use hiddenline::optimize::Options;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::read::material_colors;
-use hiddenline::scene::Scene;
+use hiddenline::shading::fill::{FillOptions, Filled, fill_prepared};
 use hiddenline::stats::timed;
 use hiddenline::strokes::{Drawing, StrokeKind};
-use hiddenline::view::Camera;
-use hiddenline::writers::NoFills;
+use hiddenline::write::NoFills;
 
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};

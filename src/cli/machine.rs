@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hiddenline::optimize::estimate::Motion;
-use hiddenline::writers::{Format, gcode, hpgl};
+use hiddenline::write::{Format, gcode, hpgl};
 use thiserror::Error;
 
 use super::config;

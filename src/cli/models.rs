@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use hiddenline::arrange::{Arrangement, Pose, UpAxis};
-use hiddenline::mesh::{Mesh, Repairs};
+use hiddenline::model::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::model::mesh::{Mesh, Repairs};
 use hiddenline::read::{ModelFormat, material_files, read_file};
 
 use super::messages::counted;

@@ -5,11 +5,11 @@ use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use hiddenline::line_svg;
 use hiddenline::optimize::Options;
 use hiddenline::page::Drawn;
+use hiddenline::read_svg;
 use hiddenline::stats::timed;
-use hiddenline::writers::Format;
+use hiddenline::write::Format;
 
 use super::messages::counted;
 use super::output::{OutputArgs, OutputOptions, check_place};
@@ -93,8 +93,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let read = timed(&mut run.stats.seconds.read, || -> Result<_, Box<dyn Error>> {
         let text = read_text(&job.file).map_err(|error| format!("{name}: {error}"))?;
         let options =
-            line_svg::Options { tolerance_mm: job.tolerance_mm, ..line_svg::Options::default() };
-        Ok(line_svg::read(&text, &options).map_err(|error| format!("{name}: {error}"))?)
+            read_svg::Options { tolerance_mm: job.tolerance_mm, ..read_svg::Options::default() };
+        Ok(read_svg::read(&text, &options).map_err(|error| format!("{name}: {error}"))?)
     })?;
     let mut plot = read.plot;
     for rule in job.output.plotting.pens(hiddenline::page::DEFAULT_PEN_WIDTH_MM) {

@@ -6,9 +6,9 @@ mod place;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use hiddenline::writers::Format;
-use hiddenline::writers::png::{Marks, Resolution};
-use hiddenline::writers::svg::StrokeElement;
+use hiddenline::write::Format;
+use hiddenline::write::png::{Marks, Resolution};
+use hiddenline::write::svg::StrokeElement;
 
 pub(super) use self::file::{write_to_file, write_to_stdout};
 pub(super) use self::place::check_place;

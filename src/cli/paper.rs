@@ -5,14 +5,14 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::time::Instant;
 
+use hiddenline::camera::Camera;
 use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Page, PageOptions, Placement, PlotOptions};
 use hiddenline::plot::Plot;
 use hiddenline::stats::{PenWork, PlotStats, Stats, peak_bytes, timed};
 use hiddenline::strokes::Drawing;
-use hiddenline::view::Camera;
-use hiddenline::writers::png::PngError;
-use hiddenline::writers::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
+use hiddenline::write::png::PngError;
+use hiddenline::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
 use super::machine::Device;
 use super::messages::counted;

@@ -8,7 +8,7 @@ use hiddenline::optimize::{Effort, Options, estimate, optimize, split_by_distanc
 use hiddenline::page::{Drawn, PenRule};
 use hiddenline::plot::{Pen, Plot};
 use hiddenline::stats::{PenWork, PlotStats};
-use hiddenline::writers::Format;
+use hiddenline::write::Format;
 
 use super::machine::{MachineError, Target};
 use super::values::{self, PenText};

@@ -10,9 +10,9 @@ use std::time::Instant;
 use clap::Args;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::preview::{self, Options};
+use hiddenline::shading::preview::{self, Options};
 use hiddenline::stats::peak_bytes;
-use hiddenline::writers::Format;
+use hiddenline::write::Format;
 
 use self::picture::PictureArgs;
 use super::camera::{CameraArgs, ViewSource};

@@ -2,12 +2,12 @@
 
 use std::error::Error;
 
+use hiddenline::camera::Camera;
 use hiddenline::classify::LineSelection;
-use hiddenline::mesh::Mesh;
-use hiddenline::scene::Scene;
+use hiddenline::model::mesh::Mesh;
+use hiddenline::model::scene::Scene;
 use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::StrokeKind;
-use hiddenline::view::Camera;
 
 use super::camera::ViewSource;
 use super::paper::Notes;

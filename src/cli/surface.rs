@@ -8,8 +8,9 @@ mod smoothness;
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
+use hiddenline::axes::{Titles, dress, missing};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
-use hiddenline::dressing::{Titles, dress, missing};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
@@ -20,8 +21,7 @@ use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
 use hiddenline::surface::{Grid, LatticeLines, LinedScene};
-use hiddenline::view::{Camera, Projection};
-use hiddenline::writers::Format;
+use hiddenline::write::Format;
 
 pub(super) use self::args::SurfaceArgs;
 use self::args::{EngineName, Levels};

@@ -6,7 +6,7 @@ use glam::DVec3;
 use hiddenline::classify::LineSelection;
 use hiddenline::optimize::Effort;
 use hiddenline::page::{Dash, Drawn, parse_length_mm};
-use hiddenline::preview::LARGEST_SIDE;
+use hiddenline::shading::preview::LARGEST_SIDE;
 use hiddenline::strokes::StrokeKind;
 
 use super::machine;

@@ -7,6 +7,8 @@
 //! | [`image`] | the triangles in pixels | the triangle that each pixel shows |
 //! | [`surface`] | a grid of heights | visible pieces of its grid lines |
 
+pub mod visibility;
+
 pub mod edge;
 
 pub mod face;

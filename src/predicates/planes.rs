@@ -16,7 +16,7 @@ use super::corner::{Corner, Place};
 use super::exact::{self, Dyadic};
 use super::sight::fits_filter;
 use super::{Estimate, Homogeneous, Sign, TRIPLE_PRODUCT_ERROR, Viewpoint};
-use crate::view::{Camera, Projection};
+use crate::camera::{Camera, Projection};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};

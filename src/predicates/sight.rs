@@ -2,7 +2,7 @@
 
 use super::pierced::{self, Homogeneous, PiercePoint};
 use super::{Estimate, Sign, TRIPLE_PRODUCT_ERROR, exact};
-use crate::view::{Camera, Projection};
+use crate::camera::{Camera, Projection};
 use dashu_int::IBig;
 use glam::DVec3;
 use rayon::prelude::*;

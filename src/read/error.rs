@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::mesh::MeshError;
+use crate::model::mesh::MeshError;
 
 /// A model that cannot be read: the file, the line if the format has lines, and the fault.
 ///

@@ -30,7 +30,7 @@ pub use error::{Fault, ReadError};
 pub use materials::{MaterialColors, material_colors, material_files};
 pub use warning::{Notice, Warning};
 
-use crate::mesh::{Mesh, PolygonSoup, Repairs};
+use crate::model::mesh::{Mesh, PolygonSoup, Repairs};
 use error::Located;
 
 /// The formats that can be read.

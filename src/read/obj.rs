@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::error::{Fault, Located};
 use super::obj_filter::{Filtered, filter};
 use super::{Draft, text};
-use crate::mesh::{MeshError, PolygonSoup};
+use crate::model::mesh::{MeshError, PolygonSoup};
 
 /// Reads decoded OBJ text.
 pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {

@@ -13,7 +13,7 @@ use rustc_hash::FxHashMap;
 use super::error::{Fault, Located};
 use super::text::{after_line_end, is_blank, is_line_end, name, number, shown};
 use super::warning::Notice;
-use crate::mesh::Part;
+use crate::model::mesh::Part;
 
 /// Records that concern neither shape nor names: skipped without a word.
 const IRRELEVANT: [&[u8]; 16] = [

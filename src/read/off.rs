@@ -12,7 +12,7 @@ use super::Draft;
 use super::error::{Fault, Located};
 use super::text::{Words, number, shown};
 use super::warning::Notice;
-use crate::mesh::MeshError;
+use crate::model::mesh::MeshError;
 
 /// Whether the first word of a text is a keyword of the format.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {

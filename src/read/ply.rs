@@ -16,7 +16,7 @@ use super::Draft;
 use super::error::{Fault, Located};
 use super::text::{Words, shown};
 use super::warning::Notice;
-use crate::mesh::MeshError;
+use crate::model::mesh::MeshError;
 
 /// Elements read at a time.
 const BATCH: usize = 4096;

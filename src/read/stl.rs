@@ -14,7 +14,7 @@ use super::Draft;
 use super::error::{Fault, Located};
 use super::text::{Words, decode, name, number, shown};
 use super::warning::Notice;
-use crate::mesh::{MeshError, Part, PolygonSoup};
+use crate::model::mesh::{MeshError, Part, PolygonSoup};
 
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;

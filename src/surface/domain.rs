@@ -15,8 +15,8 @@ use rustc_hash::FxHashMap;
 
 use super::lined_mesh::{LatticeLines, LinedMesh};
 use super::{Grid, GridError};
-use crate::formula::Formula;
 use crate::strokes::StrokeKind;
+use crate::surface::formula::Formula;
 
 /// How often the edge on which the rim lies is halved: then it is known to the last bit of an edge
 /// that does not begin at the origin.

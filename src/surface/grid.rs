@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::formula::Formula;
+use crate::surface::formula::Formula;
 
 /// Most samples of a grid: 10⁸.
 pub const MAX_SAMPLES: usize = 100_000_000;

@@ -5,8 +5,8 @@ use rustc_hash::FxHashMap;
 
 use super::Grid;
 use crate::classify::DrawnEdge;
-use crate::mesh::{Mesh, MeshError, PolygonSoup};
-use crate::scene::Scene;
+use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
+use crate::model::scene::Scene;
 use crate::strokes::StrokeKind;
 
 /// Points on the border of a parametric surface that are closer than this part of its largest

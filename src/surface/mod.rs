@@ -1,5 +1,7 @@
 //! Surfaces z = f(x, y): where their samples come from, and the mesh they make.
 
+pub mod formula;
+
 mod csv;
 mod domain;
 mod grid;

@@ -3,11 +3,11 @@
 use crate::engines;
 use crate::scenes::{number_of_scenes, random};
 use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, DEFAULT_NEAR, Projection};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::scene::Scene;
-use hiddenline::view::{Camera, DEFAULT_NEAR, Projection};
-use hiddenline::visibility::Span;
+use hiddenline::engines::visibility::Span;
+use hiddenline::model::scene::Scene;
 use std::path::Path;
 
 /// Spans as a drawing shows them: without those that rounding leaves next to nothing of, and

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::engines::edge::{Engine, Settings, outline, solve};
-use hiddenline::mesh::{Mesh, PolygonSoup};
-use hiddenline::scene::Scene;
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::scene::Scene;
 use hiddenline::strokes::StrokeKind;
-use hiddenline::view::{Camera, Projection};
 
 use crate::scenes::{Rng, number_of_scenes};
 

@@ -5,12 +5,12 @@ use crate::oracle::{EdgeTruth, Kind, Settings as TruthSettings, truth};
 use crate::scenes::{Scene as TestScene, number_of_scenes, random};
 use crate::truth::{EngineEdge, EngineSpan, compare, truth_of};
 use glam::DVec3;
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::mesh::{Mesh, PolygonSoup};
-use hiddenline::scene::Scene;
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::scene::Scene;
 use hiddenline::strokes::StrokeKind;
-use hiddenline::view::{Camera, Projection};
 
 pub(crate) fn mesh(scene: &TestScene) -> Mesh {
     let mut soup = PolygonSoup {

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 use hiddenline::plot::Plot;
-use hiddenline::writers::png::{self, Resolution};
-use hiddenline::writers::svg::{self, StrokeElement};
+use hiddenline::write::png::{self, Resolution};
+use hiddenline::write::svg::{self, StrokeElement};
 
 fn is_up_to_date(name: &str, plot: &Plot) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("plots").join(name);

@@ -11,7 +11,7 @@ use glam::DVec3;
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::{DrawOptions, HiddenLines, draw};
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::scene::Scene;
+use hiddenline::model::scene::Scene;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::StrokeKind;
 

@@ -1,13 +1,13 @@
 //! Lines where materials or groups change.
 
 use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
+use hiddenline::model::scene::Scene;
 use hiddenline::read::read_bytes;
-use hiddenline::scene::Scene;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::{Drawing, StrokeKind};
-use hiddenline::view::{Camera, Projection};
 
 /// Six unit squares in a row along x, in one plane: materials and groups change on the way, once back
 /// to an earlier one, once only in name, and once where the strip bends upwards.

@@ -7,7 +7,7 @@ use crate::truth::{Image, compare_strokes};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::edge::outline;
-use hiddenline::scene::Scene;
+use hiddenline::model::scene::Scene;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::{Drawing, StrokeKind};
 use std::cell::Cell;

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, dvec2};
 use hiddenline::plot::{Layer, Pen, Plot, Polylines};
-use hiddenline::writers::{dxf, gcode, hpgl, pdf};
+use hiddenline::write::{dxf, gcode, hpgl, pdf};
 
 fn plot(width_mm: f64, height_mm: f64, layers: &[&[&[(f64, f64)]]]) -> Plot {
     let layers = layers.iter().zip(1..).map(|(strokes, number)| {

@@ -324,7 +324,7 @@ fn wire(n: &str) -> Option<Polylines> {
         return None;
     }
     let text = fs::read_to_string(file).unwrap();
-    let read = hiddenline::line_svg::read(&text, &hiddenline::line_svg::Options::default());
+    let read = hiddenline::read_svg::read(&text, &hiddenline::read_svg::Options::default());
     Some(read.unwrap().plot.layers.swap_remove(0).lines)
 }
 

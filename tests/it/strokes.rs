@@ -1,15 +1,15 @@
 //! What a pen draws: chains, lines drawn once, contact, and short strokes.
 
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::{DrawOptions, HiddenLines, draw};
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::scene::Scene;
 use hiddenline::predicates::Sign;
-use hiddenline::scene::Scene;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::Drawing;
-use hiddenline::view::{Camera, Projection};
 
 const BOX_FACES: [[u32; 4]; 6] =
     [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -1,8 +1,8 @@
 //! The camera against the projections of the literature, and the views that have names.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::framing::{Framing, FramingError, NamedView, ProjectionKind, Standpoint};
-use hiddenline::view::{Camera, CameraError, Projection};
+use hiddenline::camera::framing::{Framing, FramingError, NamedView, ProjectionKind, Standpoint};
+use hiddenline::camera::{Camera, CameraError, Projection};
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 30.0, near: 1e-6 };
 

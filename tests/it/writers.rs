@@ -1,16 +1,16 @@
 //! Page and writers: what is on paper, where, and in which form.
 
 use glam::{DVec2, DVec3, dvec2};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::draw::HiddenLines;
 use hiddenline::page::{
     Dash, Orientation, Page, PageError, PageOptions, Paper, PlacedPlot, Placement, PlotOptions,
 };
 use hiddenline::plot::{Layer, Pen, Plot, Polylines};
 use hiddenline::strokes::{Drawing, StrokeKind};
-use hiddenline::view::{Camera, Projection};
-use hiddenline::writers::png::{PngError, Resolution};
-use hiddenline::writers::svg::StrokeElement;
-use hiddenline::writers::{json, png, svg};
+use hiddenline::write::png::{PngError, Resolution};
+use hiddenline::write::svg::StrokeElement;
+use hiddenline::write::{json, png, svg};
 
 fn orthographic() -> Camera {
     Camera::new(DVec3::NEG_Y, DVec3::ZERO, DVec3::Z, Projection::Orthographic).expect("good")

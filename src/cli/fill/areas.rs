@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::engines::face::warnock::Subdivision;
 use hiddenline::engines::face::{Engine, Settings};
-use hiddenline::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, Show};
+use hiddenline::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, Show};
 
 use crate::cli::values;
 

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::classify::LineSelection;
 use hiddenline::engines::image::Engine;
-use hiddenline::preview::{Options, Pixels, Show};
+use hiddenline::shading::preview::{Options, Pixels, Show};
 
 use crate::cli::{Refused, values};
 

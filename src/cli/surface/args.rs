@@ -1,7 +1,7 @@
 //! What is typed after `hiddenline surface`, and what it means.
 
 use clap::{Args, ValueEnum};
-use hiddenline::dressing::Titles;
+use hiddenline::axes::Titles;
 use hiddenline::engines::surface::Lines;
 
 use super::Job;

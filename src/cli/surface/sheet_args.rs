@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use hiddenline::formula::{Formula, Variables};
+use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{MAX_SAMPLES, Placement};
 
 use super::sheets::{Input, Sheets};

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use hiddenline::engines::surface::max_min;
-use hiddenline::formula::Formula;
-use hiddenline::mesh::Mesh;
+use hiddenline::model::mesh::Mesh;
+use hiddenline::surface::formula::Formula;
 use hiddenline::surface::{
     Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
     delaunay, evenly, read_heights, read_points,
 };
 
-use hiddenline::view::Camera;
+use hiddenline::camera::Camera;
 
 use super::Job;
 use super::args::EngineName;

@@ -9,9 +9,9 @@
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::page::Page;
 use hiddenline::strokes::{Drawing, StrokeKind};
-use hiddenline::view::{Camera, Projection};
 
 use super::Job;
 use super::args::EngineName;

@@ -23,7 +23,7 @@ mod shadow;
 mod sweep;
 
 use crate::classify::ViewedScene;
-use crate::visibility::Visibility;
+use crate::engines::visibility::Visibility;
 
 /// Settings that every line engine obeys.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -25,9 +25,9 @@ use super::segment::Segment;
 use super::shadow::{Cover, image_cover};
 use super::sweep::Sweep;
 use crate::classify::ViewedScene;
+use crate::engines::visibility::Span;
 use crate::predicates::CutPlane;
 use crate::strokes::StrokeKind;
-use crate::visibility::Span;
 use rayon::prelude::*;
 
 /// How many segments make one piece of parallel work.

@@ -26,8 +26,8 @@ use super::shadow::{Shadow, Sides, shadow};
 use super::sweep::Sweep;
 use super::{Counts, Settings};
 use crate::classify::ViewedScene;
+use crate::engines::visibility::{Span, Visibility};
 use crate::predicates::CutPlane;
-use crate::visibility::{Span, Visibility};
 use rayon::prelude::*;
 use std::sync::Mutex;
 

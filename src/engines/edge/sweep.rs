@@ -2,8 +2,8 @@
 
 use super::segment::Segment;
 use super::shadow::Cover;
+use crate::engines::visibility::Span;
 use crate::predicates::{Cut, Sight};
-use crate::visibility::Span;
 use std::cmp::Ordering;
 
 /// Collects what covers or doubles one segment, then sweeps it; reused from segment to segment.

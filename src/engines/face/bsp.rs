@@ -52,9 +52,9 @@ use std::borrow::Cow;
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
 use super::{Counts, Work};
+use crate::camera::Camera;
+use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes, Sign};
-use crate::scene::Scene;
-use crate::view::Camera;
 
 /// No node.
 const NONE: u32 = u32::MAX;

@@ -14,10 +14,10 @@
 
 use super::Counts;
 use super::painting::{NO_LINE, Painting};
+use crate::camera::{Camera, Frame, Projection};
 use crate::classify::ImagePoint;
+use crate::model::scene::Scene;
 use crate::predicates::{Corner, Estimate, Place, Plane, PlaneName, Planes, Sign};
-use crate::scene::Scene;
-use crate::view::{Camera, Frame, Projection};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;

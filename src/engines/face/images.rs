@@ -14,10 +14,10 @@ use rayon::prelude::*;
 
 use super::painting::NO_LINE;
 use super::region::{Grid, Region};
+use crate::camera::{Camera, Frame, Projection};
 use crate::engines::image::raster::Corners;
+use crate::model::scene::Scene;
 use crate::predicates::{Sight, Sign, Solid};
-use crate::scene::Scene;
-use crate::view::{Camera, Frame, Projection};
 
 /// How near the points of a plane are, evenly over the image: `at_origin + slope · point`.
 ///

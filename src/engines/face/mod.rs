@@ -42,8 +42,8 @@ use thiserror::Error;
 pub use self::bsp::TooManyFragments;
 pub use self::painting::{Painting, Piece};
 pub use self::work::{Counts, Work};
-use crate::scene::Scene;
-use crate::view::Camera;
+use crate::camera::Camera;
+use crate::model::scene::Scene;
 
 /// The face engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -57,9 +57,9 @@ use super::bsp::{Forest, Order, TooManyFragments, check_piercings};
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
 use super::{Counts, Work};
+use crate::camera::Camera;
+use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes, Sign};
-use crate::scene::Scene;
-use crate::view::Camera;
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -43,7 +43,7 @@ pub struct Ring<'a> {
     /// Its corners in image coordinates.
     pub points: &'a [DVec2],
     /// For the side that begins at each corner: the line of the scene that it lies on, or
-    /// [`NO_LINE`]; see [`Scene::line`](crate::scene::Scene::line).
+    /// [`NO_LINE`]; see [`Scene::line`](crate::model::scene::Scene::line).
     pub lines: &'a [u32],
 }
 

@@ -4,7 +4,7 @@
 //! several where many do so in one place. The guess is from a sample of pairs in plain floating point:
 //! nothing but the readiness to start depends on it.
 
-use crate::scene::Scene;
+use crate::model::scene::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
 

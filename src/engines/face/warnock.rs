@@ -45,9 +45,9 @@ use super::images::{Images, Place};
 use super::painting::{NO_LINE, Painting};
 use super::region::{Region, Side};
 use super::{FaceError, merge};
+use crate::camera::Camera;
 use crate::engines::image::depth::Depth;
-use crate::scene::Scene;
-use crate::view::Camera;
+use crate::model::scene::Scene;
 
 /// Leaves along the diagonal of the image, unless a size is set.
 pub const DEFAULT_LEAVES: f64 = 1000.0;

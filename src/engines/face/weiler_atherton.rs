@@ -51,8 +51,8 @@ use super::images::{Images, Place};
 use super::painting::Painting;
 use super::region::Region;
 use super::{FaceError, merge};
-use crate::scene::Scene;
-use crate::view::Camera;
+use crate::camera::Camera;
+use crate::model::scene::Scene;
 
 /// More faces (triangles, of bent ones) in the image than this are refused.
 pub const MOST_FACES: usize = 10_000;

@@ -15,10 +15,10 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::raster::{Corners, PixelMap, Raster, Strip, columns};
+use crate::camera::Camera;
 use crate::engines::face::fragment::Easel;
 use crate::engines::face::{bsp, depth_sort};
-use crate::scene::Scene;
-use crate::view::Camera;
+use crate::model::scene::Scene;
 
 /// The faces of a scene pierce each other too often to be put in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]

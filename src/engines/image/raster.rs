@@ -18,10 +18,10 @@ use rayon::prelude::*;
 
 use super::depth::DepthPlane;
 use super::edge::{PixelEdge, first_center};
+use crate::camera::{Camera, Projection};
 use crate::classify::ImagePoint;
+use crate::model::scene::Scene;
 use crate::predicates::{Sight, Sign};
-use crate::scene::Scene;
-use crate::view::{Camera, Projection};
 
 /// Rows of a strip. Fewer list large triangles more often; more leave threads without work and
 /// need more memory.

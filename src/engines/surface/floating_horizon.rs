@@ -28,8 +28,8 @@ use super::pieces::{GridPieces, HIDDEN, UPPER};
 use super::plan_predicates::Sight;
 use super::segment::Plane;
 use super::strip::Strip;
+use crate::camera::{Camera, Projection};
 use crate::surface::{Grid, Holes};
-use crate::view::{Camera, Projection};
 
 /// A family of grid lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

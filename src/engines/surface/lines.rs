@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 use super::pen_path::{LineStroke, order};
 use super::pieces::{GridPieces, LOWER, PARTLY, Piece, Side, UPPER};
+use crate::camera::{Camera, Frame, Projection};
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
 use crate::strokes::{Drawing, StrokeKind};
 use crate::surface::Grid;
-use crate::view::{Camera, Frame, Projection};
 
 /// Which grid lines are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -53,8 +53,8 @@ use super::plan_predicates::{Sight, over_plane};
 use super::segment::Plane;
 use super::strip::Strip;
 use super::{Order, SurfaceError};
+use crate::camera::{Camera, Projection};
 use crate::surface::{Grid, Holes};
-use crate::view::{Camera, Projection};
 
 /// What this engine is called.
 pub const NAME: &str = "max-min";

@@ -3,15 +3,15 @@
 
 use super::max_min::NAME;
 use super::tin;
+use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain, shortest};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{Counts, Engine, Settings, solve};
+use crate::engines::visibility::Visibility;
 use crate::predicates::Sign;
 use crate::stats::{Stats, timed};
 use crate::strokes::{Drawing, StrokeKind};
 use crate::surface::LinedScene;
-use crate::view::Camera;
-use crate::visibility::Visibility;
 
 /// How a surface is drawn by a mesh engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ pub struct MeshedOptions {
     /// Edges with only one triangle, too.
     pub border: bool,
     /// Lines in which sheets cross, too, as far as the scene knows them, and edges that they share
-    /// there; see [`Scene::with_intersections`](crate::scene::Scene::with_intersections).
+    /// there; see [`Scene::with_intersections`](crate::model::scene::Scene::with_intersections).
     pub intersections: bool,
     /// One two-point stroke for each maximal visible interval of each edge.
     pub exact: bool,

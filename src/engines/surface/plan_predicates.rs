@@ -15,7 +15,7 @@ use dashu_int::ops::BitTest;
 use dashu_int::{IBig, Sign};
 use glam::DVec3;
 
-use crate::view::{Camera, Projection};
+use crate::camera::{Camera, Projection};
 
 /// How points are seen from one part of the domain.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -28,11 +28,11 @@ use super::pieces::{GridPieces, HIDDEN, LOWER, PARTLY, UPPER};
 use super::plan_predicates::{Sight, over_plane};
 use super::segment::{Plane, Samples, Vertex};
 use super::strip::Strip;
+use crate::camera::{Camera, Projection};
 use crate::classify::ViewedScene;
+use crate::engines::visibility::{Span, Visibility};
+use crate::model::scene::Scene;
 use crate::predicates::{Sign, orient2d};
-use crate::scene::Scene;
-use crate::view::{Camera, Projection};
-use crate::visibility::{Span, Visibility};
 
 /// A part is split into strips of about this many triangles.
 const TRIANGLES_PER_STRIP: usize = 60_000;

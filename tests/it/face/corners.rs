@@ -5,8 +5,8 @@ use crate::oracle::exact::{Int, Plane, Point, negated, plane_through, scaled, si
 use crate::scenes::{Model, Rng, orthographic, random};
 use hiddenline::engines::face::fragment::Fragment;
 use hiddenline::engines::face::{bsp, octree};
+use hiddenline::model::scene::Scene;
 use hiddenline::predicates::{Place, PlaneName, Planes, Sign};
-use hiddenline::scene::Scene;
 
 /// Numbers count in this power of two: finer than any that comes up.
 const UNIT: i32 = -400;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use hiddenline::engines::face::fragment::Fragment;
 use hiddenline::engines::face::painting::NO_LINE;
 use hiddenline::engines::face::{bsp, depth_sort, octree};
-use hiddenline::scene::Scene;
+use hiddenline::model::scene::Scene;
 use std::collections::HashMap;
 
 /// Largest error of a sum of rounded lengths or areas, in parts of it.

@@ -4,9 +4,9 @@ use crate::oracle::exact::{
     Int, Ratio, common_exponent, cross, decomposed, dot, minus, scaled, sign,
 };
 use glam::{DVec2, DVec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::engines::face::{Painting, Piece};
-use hiddenline::scene::Scene;
-use hiddenline::view::{Camera, Projection};
+use hiddenline::model::scene::Scene;
 
 /// Samples nearer than this to the border of any piece, in parts of the image's size, are not judged.
 const BORDER: f64 = 1e-7;

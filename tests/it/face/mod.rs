@@ -6,9 +6,9 @@ pub(crate) mod judge;
 mod models;
 mod order;
 
+use hiddenline::camera::Camera;
 use hiddenline::engines::face::{Painting, bsp, depth_sort, octree, weiler_atherton};
-use hiddenline::scene::Scene;
-use hiddenline::view::Camera;
+use hiddenline::model::scene::Scene;
 
 /// An engine without settings.
 type Solve = fn(&Scene, &Camera) -> Painting;

@@ -3,10 +3,10 @@
 use super::judge::World;
 use super::{ENGINES, EXACT};
 use crate::image::model;
+use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
 use hiddenline::engines::face::{bsp, depth_sort, piercing};
-use hiddenline::framing::{Framing, NamedView, Standpoint};
+use hiddenline::model::scene::Scene;
 use hiddenline::read::read_file;
-use hiddenline::scene::Scene;
 use std::path::Path;
 
 const MODELS: [&str; 14] = [

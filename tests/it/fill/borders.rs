@@ -6,14 +6,14 @@ use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
 use glam::{DVec2, DVec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::face::images::Images;
 use hiddenline::engines::face::weiler_atherton::solve;
-use hiddenline::scene::Scene;
+use hiddenline::model::scene::Scene;
 use hiddenline::stats::Stats;
 use hiddenline::strokes::StrokeKind;
-use hiddenline::view::{Camera, Projection};
 
 type Segment = [DVec2; 2];
 

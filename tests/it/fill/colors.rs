@@ -3,16 +3,16 @@
 use super::{built, model};
 use crate::scenes::{Model, Scene as TestScene, orthographic};
 use glam::{DVec2, DVec3, dvec2};
+use hiddenline::camera::Camera;
+use hiddenline::camera::framing::Framing;
 use hiddenline::engines::face::Engine;
-use hiddenline::fill::{FillError, FillOptions, Filled, Palette, Show, fill};
-use hiddenline::framing::Framing;
+use hiddenline::model::scene::Scene;
 use hiddenline::page::{Dash, Page, PageOptions, Placement, PlotOptions};
 use hiddenline::plot::{Fills, Plot};
-use hiddenline::scene::Scene;
+use hiddenline::shading::fill::{FillError, FillOptions, Filled, Palette, Show, fill};
 use hiddenline::strokes::Drawing;
-use hiddenline::view::Camera;
-use hiddenline::writers::png::Resolution;
-use hiddenline::writers::{dxf, gcode, pdf, png};
+use hiddenline::write::png::Resolution;
+use hiddenline::write::{dxf, gcode, pdf, png};
 
 /// A unit cube with its front, right and top in view.
 fn cube() -> TestScene {

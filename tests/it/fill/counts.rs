@@ -5,12 +5,12 @@ use super::regions::warnocks_pair;
 use super::{built, painted};
 use crate::scenes::{Model, orthographic, perspective};
 use glam::DVec2;
+use hiddenline::camera::framing::Framing;
 use hiddenline::engines::face::warnock::{Options, Subdivision};
 use hiddenline::engines::face::{Engine, Prepared, Settings, Work, bsp, octree, warnock};
 use hiddenline::engines::image::raster::Corners;
-use hiddenline::framing::Framing;
+use hiddenline::model::scene::Scene;
 use hiddenline::read::read_file;
-use hiddenline::scene::Scene;
 use serde_json::Value;
 use std::path::Path;
 

@@ -2,13 +2,13 @@
 //! nesting does not depend on the stack.
 
 use glam::{DVec2, DVec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::engines::face::{
     Engine, FaceError, Prepared, Settings, Work, depth_sort, weiler_atherton,
 };
 use hiddenline::engines::image::{PixelMap, painter};
-use hiddenline::mesh::{Mesh, PolygonSoup};
-use hiddenline::scene::Scene;
-use hiddenline::view::{Camera, Projection};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::scene::Scene;
 
 use crate::scenes::Rng;
 

@@ -3,10 +3,10 @@
 use super::{built, painted};
 use crate::scenes::{number_of_scenes, random};
 use glam::{DVec2, DVec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::engines::face::{Painting, weiler_atherton};
 use hiddenline::engines::image::raster::Corners;
-use hiddenline::scene::Scene;
-use hiddenline::view::{Camera, Projection};
+use hiddenline::model::scene::Scene;
 
 /// The face that a ray meets first; the outer `None` where rounding might decide.
 fn met(origin: DVec3, direction: DVec3, near: f64, scene: &Scene) -> Option<Option<u32>> {

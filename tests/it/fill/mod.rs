@@ -12,11 +12,11 @@ mod warnock;
 use crate::engines::{camera, mesh};
 use crate::scenes::Scene as TestScene;
 use glam::DVec2;
+use hiddenline::camera::Camera;
 use hiddenline::engines::face::Painting;
-use hiddenline::mesh::Mesh;
+use hiddenline::model::mesh::Mesh;
+use hiddenline::model::scene::Scene;
 use hiddenline::read::read_file;
-use hiddenline::scene::Scene;
-use hiddenline::view::Camera;
 use std::path::Path;
 
 fn built(scene: &TestScene) -> (Scene, Camera) {

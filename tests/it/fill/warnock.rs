@@ -6,12 +6,12 @@ use super::{built, model, painted};
 use crate::image::face;
 use crate::scenes::{Model, number_of_scenes, orthographic, random};
 use glam::{DVec2, dvec2};
+use hiddenline::camera::framing::Framing;
 use hiddenline::engines::face::images::Images;
 use hiddenline::engines::face::warnock::{Counts, Options, Subdivision, solve};
 use hiddenline::engines::face::{Painting, weiler_atherton};
 use hiddenline::engines::image::{self, PixelMap, Raster, painter};
-use hiddenline::framing::Framing;
-use hiddenline::scene::Scene;
+use hiddenline::model::scene::Scene;
 
 const BOTH: [Subdivision; 2] = [Subdivision::Regular, Subdivision::Vertices];
 

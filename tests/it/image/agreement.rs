@@ -3,11 +3,11 @@
 use super::{built, face, fitted, model, models};
 use crate::scenes::{number_of_scenes, random};
 use glam::DVec2;
+use hiddenline::camera::Camera;
+use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
 use hiddenline::engines::image::raster::RasterTriangle;
 use hiddenline::engines::image::{Engine, NOTHING, Raster, painter, solve};
-use hiddenline::framing::{Framing, NamedView, Standpoint};
-use hiddenline::scene::Scene;
-use hiddenline::view::Camera;
+use hiddenline::model::scene::Scene;
 
 /// All but the painter, who does not promise it, and the z-buffer, which they are compared with.
 const OTHERS: [Engine; 4] = [Engine::ScanLine, Engine::Spanning, Engine::Watkins, Engine::RayCast];

@@ -9,8 +9,8 @@ use super::{built, face, fitted};
 use crate::scenes::{number_of_scenes, random};
 use dashu_ratio::RBig;
 use glam::{DVec2, DVec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::engines::image::{Engine, solve};
-use hiddenline::view::{Camera, Projection};
 
 /// Distances, as parts of the whole, at which floating point is not sure.
 const DOUBT: f64 = 1e-9;

@@ -10,12 +10,12 @@ mod warnock;
 use crate::engines::{camera, mesh};
 use crate::scenes::Scene as TestScene;
 use glam::DVec2;
+use hiddenline::camera::Camera;
 use hiddenline::engines::image::raster::Corners;
 use hiddenline::engines::image::{NOTHING, PixelMap, Raster};
-use hiddenline::mesh::Mesh;
+use hiddenline::model::mesh::Mesh;
+use hiddenline::model::scene::Scene;
 use hiddenline::read::read_file;
-use hiddenline::scene::Scene;
-use hiddenline::view::Camera;
 use std::path::{Path, PathBuf};
 
 /// The scene, as large as fits into a picture.

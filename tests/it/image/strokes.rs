@@ -3,13 +3,13 @@
 
 use super::{face, fitted, model};
 use glam::DVec2;
+use hiddenline::camera::Camera;
+use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::image::{Engine, solve};
-use hiddenline::framing::{Framing, Standpoint};
-use hiddenline::scene::Scene;
+use hiddenline::model::scene::Scene;
 use hiddenline::stats::Stats;
-use hiddenline::view::Camera;
 
 #[test]
 fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {

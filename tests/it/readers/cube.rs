@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use hiddenline::mesh::{Mesh, PolygonSoup};
+use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::read::{ModelFormat, read_bytes};
 
 use super::{assert_message, good, refused};

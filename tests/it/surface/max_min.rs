@@ -1,11 +1,11 @@
 //! Max-Min patches against brute force in integers.
 
 use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve as engine};
 use hiddenline::engines::surface::{GridPieces, Order, Side, SurfaceError, max_min};
 use hiddenline::surface::{Grid, LatticeLines, LinedMesh};
-use hiddenline::view::{Camera, Projection};
 
 use super::brute;
 

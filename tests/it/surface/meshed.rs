@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve};
 use hiddenline::engines::surface::{Order, max_min};
@@ -10,7 +11,6 @@ use hiddenline::strokes::StrokeKind;
 use hiddenline::surface::{
     Grid, LatticeLines, LinedMesh, LinedScene, close_seams, delaunay, evenly,
 };
-use hiddenline::view::{Camera, Projection};
 
 use super::brute::difference;
 use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, intervals, rough};

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, dvec3};
 use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
-use hiddenline::formula::{Formula, Variables};
 use hiddenline::surface::Grid;
+use hiddenline::surface::formula::{Formula, Variables};
 
 use super::max_min::{PERSPECTIVE, camera};
 

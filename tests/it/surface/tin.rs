@@ -2,13 +2,13 @@
 
 use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, rough};
 use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve};
 use hiddenline::engines::surface::{Order, max_min, tin};
-use hiddenline::formula::{Formula, Variables};
+use hiddenline::engines::visibility::Visibility;
+use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{LatticeLines, LinedMesh, LinedScene, TrimmedGrid, delaunay};
-use hiddenline::view::{Camera, Projection};
-use hiddenline::visibility::Visibility;
 
 const ALL: LatticeLines =
     LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: true };

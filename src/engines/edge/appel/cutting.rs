@@ -16,8 +16,8 @@
 //! cases. Edge-on triangles cover nothing and are not counted.
 
 use crate::classify::ViewedScene;
+use crate::model::topology::Topology;
 use crate::predicates::Sign;
-use crate::topology::Topology;
 use rayon::prelude::*;
 use std::borrow::Cow;
 

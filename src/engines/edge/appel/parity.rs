@@ -84,10 +84,10 @@ mod tests {
     use super::super::super::roberts;
     use super::Sides;
     use super::count_odd;
+    use crate::camera::{Camera, Projection};
     use crate::classify::{LineSelection, ViewedScene};
-    use crate::mesh::{Mesh, PolygonSoup};
-    use crate::scene::Scene;
-    use crate::view::{Camera, Projection};
+    use crate::model::mesh::{Mesh, PolygonSoup};
+    use crate::model::scene::Scene;
     use glam::{DVec3, dvec3};
 
     /// Two tetrahedra that cross each other, the second wound inwards.

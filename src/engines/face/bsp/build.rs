@@ -6,8 +6,8 @@
 use super::{Forest, NONE, Node};
 use crate::engines::face::fragment::{Fragment, Position};
 use crate::engines::face::{Counts, piercing};
+use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes};
-use crate::scene::Scene;
 use rayon::prelude::*;
 use thiserror::Error;
 

@@ -2,13 +2,13 @@
 
 use super::seams::Seams;
 use super::{Leaves, Octant, Tree};
+use crate::camera::Camera;
 use crate::engines::face::bsp::Order;
 use crate::engines::face::fragment::Easel;
 use crate::engines::face::occupancy::Occupancy;
 use crate::engines::face::painting::Painting;
+use crate::model::scene::Scene;
 use crate::predicates::{Corner, Plane, PlaneName, Planes, Sign};
-use crate::scene::Scene;
-use crate::view::Camera;
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 

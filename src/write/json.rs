@@ -9,8 +9,8 @@ use glam::{DAffine2, DVec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
 use crate::strokes::{Drawing, Stroke};
-use crate::view::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
 
 /// The value of `format`.
 const FORMAT: &str = "hiddenline-strokes";

@@ -17,7 +17,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::view::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
+use crate::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
 
 /// Azimuth in degrees, unless set otherwise.
 pub const DEFAULT_AZIMUTH_DEG: f64 = 30.0;

@@ -13,6 +13,8 @@
 //! `((d·r)/(d·f), (d·u)/(d·f))` in perspective and `(d·r, d·u)` in orthographic projection. The
 //! image is for drawing only: what hides what is decided on the points of the scene.
 
+pub mod framing;
+
 use glam::{DVec2, DVec3};
 use thiserror::Error;
 

@@ -3,7 +3,7 @@
 //! Triangles that share an edge do not cross there. But where the edge of some faces happens to be a
 //! diagonal of another one, as vertices go, the faces may, and how a face is cut must not matter.
 
-use crate::mesh::Mesh;
+use crate::model::mesh::Mesh;
 use rayon::prelude::*;
 
 /// Diagonals of all faces with more than three corners.

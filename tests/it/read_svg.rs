@@ -1,7 +1,7 @@
 //! Reading foreign SVGs: sizes, shapes, layers, and files made to do harm.
 
 use glam::{DVec2, dvec2};
-use hiddenline::line_svg::{Error, LineSvg, Options, read};
+use hiddenline::read_svg::{Error, LineSvg, Options, read};
 
 fn svg(attributes: &str, content: &str) -> String {
     format!(

@@ -13,9 +13,9 @@
 
 use rayon::prelude::*;
 
-use crate::mesh::Mesh;
+use crate::model::mesh::Mesh;
+use crate::model::topology::Topology;
 use crate::predicates::{Sign, Solid};
-use crate::topology::Topology;
 
 /// A diagonal along which a bent face is folded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

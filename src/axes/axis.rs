@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3};
 
 use super::font::text;
 use super::ticks::ticks;
+use crate::camera::Camera;
 use crate::strokes::{Drawing, StrokeKind};
-use crate::view::Camera;
 
 /// Length of ticks and space beside text, as a part of the height of numbers.
 const SPACE: f64 = 0.6;

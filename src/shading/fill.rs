@@ -15,15 +15,17 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::camera::{Camera, Projection};
 use crate::engines::face::region::Region;
 use crate::engines::face::{Engine, FaceError, Painting, Prepared, Settings, Work, merge};
-use crate::light::{DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes};
-use crate::mesh::Part;
+use crate::model::mesh::Part;
+use crate::model::scene::Scene;
+use crate::model::triangulate::newell_normal;
 use crate::plot::Fills;
-use crate::scene::Scene;
+use crate::shading::light::{
+    DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes,
+};
 use crate::strokes::{Drawing, StrokeKind};
-use crate::triangulate::newell_normal;
-use crate::view::{Camera, Projection};
 
 /// Most inks.
 pub const MOST_INKS: usize = 64;

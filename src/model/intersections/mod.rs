@@ -35,9 +35,9 @@ mod lines;
 mod pair;
 mod tree;
 
-use crate::mesh::Mesh;
+use crate::model::mesh::Mesh;
+use crate::model::topology::Topology;
 use crate::predicates::{PiercePoint, Solid};
-use crate::topology::Topology;
 use diagonals::Diagonals;
 use pair::{Piece, Prepared};
 use tree::BoxTree;

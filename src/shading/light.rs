@@ -11,7 +11,7 @@
 
 use glam::DVec3;
 
-use crate::view::Camera;
+use crate::camera::Camera;
 
 /// The tone of what is turned away from the light.
 const AMBIENT: f64 = 0.25;

@@ -18,8 +18,8 @@ pub use font::{missing, text};
 use glam::{DVec2, DVec3, dvec2};
 
 use self::axis::{Axis, Laid, write_centered};
+use crate::camera::{Camera, Projection};
 use crate::strokes::Drawing;
-use crate::view::{Camera, Projection};
 
 /// Height of numbers, as a part of the longer side of the box's image: 4.6 mm on A4 landscape.
 const TEXT_HEIGHT: f64 = 1.0 / 60.0;

@@ -9,7 +9,7 @@
 //!          ●◄───────────────●        consistent winding makes the other run downwards
 //! ```
 
-use crate::mesh::Mesh;
+use crate::model::mesh::Mesh;
 use rayon::prelude::*;
 
 /// Edges of a mesh with the faces along them.

@@ -1,6 +1,6 @@
 //! The color of a triangle at a pixel.
 //!
-//! The tone is that of [`crate::light`], by a normal that is flat, the triangle's own, or smooth: the
+//! The tone is that of [`crate::shading::light`], by a normal that is flat, the triangle's own, or smooth: the
 //! mean of those around each corner, mixed over the triangle (Phong 1975).
 
 use glam::{DVec2, DVec3};
@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::{Options, Show};
+use crate::camera::{Camera, Frame, Projection};
 use crate::engines::image::{NOTHING, PixelMap, Raster};
-use crate::light::{FARTHEST, Light, number_color, parts};
-use crate::scene::Scene;
-use crate::view::{Camera, Frame, Projection};
+use crate::model::scene::Scene;
+use crate::shading::light::{FARTHEST, Light, number_color, parts};
 
 pub(super) struct Shader<'a> {
     scene: &'a Scene,

@@ -19,14 +19,14 @@ use thiserror::Error;
 
 use self::overlay::Overlay;
 use self::shade::Shader;
+use crate::camera::Camera;
 use crate::engines::image::edge::center;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
 use crate::engines::image::{Engine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip};
-use crate::light::{DEFAULT_PAINT, to_bytes};
-use crate::scene::Scene;
+use crate::model::scene::Scene;
+use crate::shading::light::{DEFAULT_PAINT, to_bytes};
 use crate::stats::{Seconds, timed};
 use crate::strokes::Drawing;
-use crate::view::Camera;
 
 /// Columns and rows of a picture, unless set otherwise.
 pub const DEFAULT_SIZE: (u32, u32) = (1200, 900);

@@ -7,12 +7,12 @@
 //!   points    vertices of the mesh    | ends of those that are no vertices
 //! ```
 
-use crate::bends::{Bend, bends};
-use crate::intersections::{Intersection, Intersections};
-use crate::mesh::Mesh;
+use crate::model::bends::{Bend, bends};
+use crate::model::intersections::{Intersection, Intersections};
+use crate::model::mesh::Mesh;
+use crate::model::topology::Topology;
+use crate::model::triangulate::triangulate;
 use crate::predicates::PiercePoint;
-use crate::topology::Topology;
-use crate::triangulate::triangulate;
 use glam::DVec3;
 
 /// A mesh with everything about it that does not depend on the view.
@@ -38,7 +38,7 @@ impl Scene {
 
     /// Also finds the lines in which faces cross, so that they can be drawn.
     ///
-    /// For the cost see [`crate::intersections`].
+    /// For the cost see [`crate::model::intersections`].
     #[must_use]
     pub fn with_intersections(mut self) -> Self {
         self.intersections =

@@ -17,7 +17,7 @@
 //! (a hole joined to the outline by a bridge that is walked twice) come out right. A polygon that
 //! crosses itself has no right answer; it still yields `corners − 2` triangles.
 
-use crate::mesh::Mesh;
+use crate::model::mesh::Mesh;
 use crate::predicates::{Sign, orient2d};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -181,7 +181,7 @@ impl EarClipper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::PolygonSoup;
+    use crate::model::mesh::PolygonSoup;
     use glam::dvec3;
 
     /// Triangulates one polygon in the plane z = 0 and returns twice the triangles' areas.

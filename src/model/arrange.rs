@@ -3,8 +3,8 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::framing::sin_cos_deg;
-use crate::mesh::{Mesh, MeshError, Part, PolygonSoup, Repairs};
+use crate::camera::framing::sin_cos_deg;
+use crate::model::mesh::{Mesh, MeshError, Part, PolygonSoup, Repairs};
 
 /// The axis that points up in a model.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

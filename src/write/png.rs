@@ -10,8 +10,8 @@ use png::{BitDepth, ColorType, Compression, Encoder, PixelDimensions, Unit};
 use thiserror::Error;
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
 
-use crate::light::order_color;
 use crate::plot::{Fills, Plot};
+use crate::shading::light::order_color;
 
 /// Pixels per inch, unless set otherwise.
 pub const DEFAULT_DPI: f64 = 150.0;

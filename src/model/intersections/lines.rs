@@ -13,8 +13,8 @@
 use super::pair::{End, Piece, Site};
 use super::tree::BoxTree;
 use super::{Intersection, Intersections};
+use crate::model::topology::Topology;
 use crate::predicates::{PiercePoint, Sign, Solid};
-use crate::topology::Topology;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 

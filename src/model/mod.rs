@@ -1,0 +1,16 @@
+//! Models: polygon meshes as they were read, and the scene made of them, which holds everything
+//! that does not depend on the view.
+
+pub mod mesh;
+
+pub mod arrange;
+
+pub mod topology;
+
+pub mod triangulate;
+
+pub mod intersections;
+
+pub mod bends;
+
+pub mod scene;

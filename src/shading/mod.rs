@@ -1,0 +1,7 @@
+//! Tone and color: the light, filled areas for print, and the shaded preview.
+
+pub mod light;
+
+pub mod fill;
+
+pub mod preview;
