@@ -135,7 +135,7 @@ fn h_z_buffer_of_2000_x_2000_pixels(bencher: Bencher, n: u32) {
     let map = PixelMap::fitting(bounds, SIZE, 80.0);
     bencher.bench_local(|| {
         let raster = Raster::new(black_box(&scene), &camera(), &map, SIZE);
-        image::solve(&raster, image::Engine::ZBuffer)
+        image::solve(&raster, image::ImageEngine::ZBuffer)
     });
 }
 

@@ -3,7 +3,7 @@
 use divan::Bencher;
 use glam::{DVec3, dvec3};
 use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
+use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
 use hiddenline::surface::Grid;
 use hiddenline::surface::formula::{Formula, Variables};
 
@@ -33,12 +33,12 @@ fn sampling(n: usize) -> Grid {
 #[divan::bench(args = SIZES, sample_count = 5)]
 fn visibility(bencher: Bencher, n: usize) {
     let (grid, camera) = (sinc_hat(n), camera());
-    bencher.bench(|| max_min::solve(&grid, &camera, Order::Rows));
+    bencher.bench(|| max_min::solve(&grid, &camera, CellOrder::Rows));
 }
 
 #[divan::bench(args = SIZES, sample_count = 5)]
 fn chaining(bencher: Bencher, n: usize) {
     let (grid, camera) = (sinc_hat(n), camera());
-    let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("a drawing");
+    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
     bencher.bench(|| strokes(&grid, &pieces, &camera, &Lines::default()));
 }

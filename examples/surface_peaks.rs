@@ -6,7 +6,7 @@ use glam::dvec3;
 
 use hiddenline::axes::{Titles, dress};
 use hiddenline::camera::framing::Framing;
-use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
+use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::surface::Grid;
@@ -28,7 +28,7 @@ pub(crate) fn plot() -> Result<Plot> {
     let (low, high) = grid.heights().unwrap_or_default();
     let bounds = (dvec3(-3.0, -3.0, low), dvec3(3.0, 3.0, high));
     let camera = Framing::default().camera(bounds)?;
-    let pieces = max_min::solve(&grid, &camera, Order::Rows)?;
+    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows)?;
     let mut drawing = strokes(&grid, &pieces, &camera, &Lines { every: 5, ..Lines::default() });
     let titles = Titles { drawing: "Peaks".into(), ..Titles::default() };
     dress(&mut drawing, bounds, Z_FACTOR, &camera, &titles);

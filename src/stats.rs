@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::engines::face::Work;
+use crate::engines::face::FaceWork;
 use crate::model::scene::Scene;
 
 /// Counts and times of one run, serialized with fixed key names.
@@ -106,7 +106,7 @@ pub struct Counts {
     pub intersection_pairs: u64,
     /// What the face engine counted, where areas are filled.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub fill: Option<Work>,
+    pub fill: Option<FaceWork>,
 }
 
 impl Stats {

@@ -10,7 +10,7 @@ use std::time::Instant;
 use clap::Args;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::shading::preview::{self, Options};
+use hiddenline::shading::preview::{self, PreviewOptions};
 use hiddenline::stats::peak_bytes;
 use hiddenline::write::Format;
 
@@ -81,7 +81,7 @@ pub(super) struct PreviewArgs {
 pub(super) struct Job {
     input: Input,
     view: ViewSource,
-    options: Options,
+    options: PreviewOptions,
     edges: Option<LineSelection>,
     /// `None` is standard output.
     path: Option<PathBuf>,

@@ -14,7 +14,8 @@ use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
-    GridPieces, Lines, Order, Side, SurfaceError, floating_horizon, max_min, meshed, strokes,
+    CellOrder, GridPieces, Lines, SurfaceError, SurfaceSide, floating_horizon, max_min, meshed,
+    strokes,
 };
 use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
@@ -194,7 +195,7 @@ fn draw_by_grid(
                 let family = if job.lines.along_x { Family::AlongX } else { Family::AlongY };
                 ("floating-horizon", floating_horizon::solve(grid, camera, family)?)
             }
-            _ => (max_min::NAME, max_min::solve(grid, camera, Order::Rows)?),
+            _ => (max_min::NAME, max_min::solve(grid, camera, CellOrder::Rows)?),
         })
     })?;
     stats.engine = engine;
@@ -203,8 +204,8 @@ fn draw_by_grid(
             return strokes(grid, &pieces, camera, lines);
         }
         let of = |side| strokes(grid, &pieces, camera, &Lines { side: Some(side), ..*lines });
-        let mut drawing = of(Side::Upper);
-        drawing.append_undersides(&of(Side::Lower));
+        let mut drawing = of(SurfaceSide::Upper);
+        drawing.append_undersides(&of(SurfaceSide::Lower));
         drawing
     });
     stats.seconds = seconds;

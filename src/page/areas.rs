@@ -4,7 +4,7 @@ use glam::{DAffine2, DVec2};
 
 use super::crop::Window;
 use crate::engines::face::painting::NO_LINE;
-use crate::engines::face::region::{Grid, Region};
+use crate::engines::face::region::{Region, SnapGrid};
 use crate::plot::Fills;
 
 /// The areas on the page, and whether any was cropped.
@@ -32,7 +32,7 @@ pub(super) fn placed(
         cropped = true;
         let nothing = (window.low, window.high);
         let (low, high) = points().fold(nothing, |(low, high), p| (low.min(*p), high.max(*p)));
-        let grid = Grid::new(low, high);
+        let grid = SnapGrid::new(low, high);
         let on_grid = |p: &DVec2| (grid.snap(*p), NO_LINE);
         let region = Region::of_rings(rings.iter().map(|ring| ring.iter().map(on_grid)));
         let (a, b) = (window.low, window.high);

@@ -17,7 +17,9 @@ use thiserror::Error;
 
 use crate::camera::{Camera, Projection};
 use crate::engines::face::region::Region;
-use crate::engines::face::{Engine, FaceError, Painting, Prepared, Settings, Work, merge};
+use crate::engines::face::{
+    FaceEngine, FaceError, FaceOptions, FaceWork, Painting, Prepared, merge,
+};
 use crate::model::mesh::Part;
 use crate::model::scene::Scene;
 use crate::model::triangulate::newell_normal;
@@ -61,9 +63,9 @@ pub enum Palette {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FillOptions {
     /// How visible regions are found.
-    pub engine: Engine,
+    pub engine: FaceEngine,
     /// What the engine is told.
-    pub settings: Settings,
+    pub settings: FaceOptions,
     /// Areas lie beside each other, also where the engine paints them over each other; with a palette
     /// they always do.
     pub disjoint: bool,
@@ -112,13 +114,13 @@ pub struct Filled {
     /// One layer, or one for each ink that occurs, in the order of the palette.
     pub layers: Vec<FillLayer>,
     /// The engine that found the regions.
-    pub engine: Engine,
+    pub engine: FaceEngine,
     /// Whether no area overlaps another.
     pub is_disjoint: bool,
     /// How many pieces the engine made.
     pub n_pieces: usize,
     /// What the engine counted, if it was asked to find the regions.
-    pub work: Option<Work>,
+    pub work: Option<FaceWork>,
 }
 
 impl Filled {
@@ -183,7 +185,7 @@ pub fn fill_painting(
     scene: &Scene,
     camera: &Camera,
     painting: &Painting,
-    engine: Engine,
+    engine: FaceEngine,
     options: &FillOptions,
 ) -> Filled {
     let colors = colors(scene, camera, painting, options);
@@ -331,7 +333,7 @@ fn layers_by_ink(painting: &Painting, colors: &[[u8; 3]], palette: &Palette) -> 
     for (number, (color, region)) in inks.into_iter().zip(joined).enumerate() {
         let mut fills = Fills::default();
         for part in region.parts() {
-            let point = |side: &crate::engines::face::region::Side| grid.point(side.from);
+            let point = |side: &crate::engines::face::region::RegionSide| grid.point(side.from);
             fills.push(
                 color,
                 part.iter().map(|ring| ring.iter().map(point).collect::<Vec<DVec2>>()),

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::engines::face::warnock::Subdivision;
-use hiddenline::engines::face::{Engine, Settings};
+use hiddenline::engines::face::{FaceEngine, FaceOptions};
 use hiddenline::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, Show};
 
 use crate::cli::values;
@@ -95,14 +95,14 @@ impl AreaArgs {
     pub(super) fn options(&self) -> FillOptions {
         FillOptions {
             engine: match self.engine {
-                EngineName::Auto => Engine::Auto,
-                EngineName::DepthSort => Engine::DepthSort,
-                EngineName::Bsp => Engine::Bsp,
-                EngineName::Octree => Engine::Octree,
-                EngineName::Warnock => Engine::Warnock,
-                EngineName::WeilerAtherton => Engine::WeilerAtherton,
+                EngineName::Auto => FaceEngine::Auto,
+                EngineName::DepthSort => FaceEngine::DepthSort,
+                EngineName::Bsp => FaceEngine::Bsp,
+                EngineName::Octree => FaceEngine::Octree,
+                EngineName::Warnock => FaceEngine::Warnock,
+                EngineName::WeilerAtherton => FaceEngine::WeilerAtherton,
             },
-            settings: Settings {
+            settings: FaceOptions {
                 leaf: None,
                 subdivision: match self.subdivision {
                     SubdivisionName::Regular => Subdivision::Regular,

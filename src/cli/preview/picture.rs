@@ -3,8 +3,8 @@
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::classify::LineSelection;
-use hiddenline::engines::image::Engine;
-use hiddenline::shading::preview::{Options, Pixels, Show};
+use hiddenline::engines::image::ImageEngine;
+use hiddenline::shading::preview::{Pixels, PreviewOptions, Show};
 
 use crate::cli::{Refused, values};
 
@@ -104,7 +104,7 @@ impl PictureArgs {
         name.map(|name| name.get_name().to_owned()).unwrap_or_default()
     }
 
-    pub(super) fn options(&self) -> Result<Options, Refused> {
+    pub(super) fn options(&self) -> Result<PreviewOptions, Refused> {
         if self.opacity.is_some() && self.engine != EngineName::ABuffer {
             return Err("--opacity needs --engine a-buffer".into());
         }
@@ -114,12 +114,12 @@ impl PictureArgs {
         }
         let pixels = match self.engine {
             EngineName::ABuffer => Pixels::Shares { opacity: self.opacity.unwrap_or(1.0) },
-            EngineName::ZBuffer => Pixels::Centers(Engine::ZBuffer),
-            EngineName::ScanLine => Pixels::Centers(Engine::ScanLine),
-            EngineName::Spanning => Pixels::Centers(Engine::Spanning),
-            EngineName::Watkins => Pixels::Centers(Engine::Watkins),
-            EngineName::RayCast => Pixels::Centers(Engine::RayCast),
-            EngineName::Painter => Pixels::Centers(Engine::Painter),
+            EngineName::ZBuffer => Pixels::Centers(ImageEngine::ZBuffer),
+            EngineName::ScanLine => Pixels::Centers(ImageEngine::ScanLine),
+            EngineName::Spanning => Pixels::Centers(ImageEngine::Spanning),
+            EngineName::Watkins => Pixels::Centers(ImageEngine::Watkins),
+            EngineName::RayCast => Pixels::Centers(ImageEngine::RayCast),
+            EngineName::Painter => Pixels::Centers(ImageEngine::Painter),
         };
         let show = match self.show {
             _ if self.tone => Show::Tone,
@@ -128,7 +128,7 @@ impl PictureArgs {
             ShowName::Faces => Show::Faces,
             ShowName::Normals => Show::Normals,
         };
-        Ok(Options {
+        Ok(PreviewOptions {
             size: self.size,
             pixels,
             show,

@@ -45,13 +45,13 @@ pub use self::build::{
     AXES_FROM, MAX_FRAGMENTS, MAX_PIERCINGS, N_CANDIDATES, N_SAMPLES, SPLIT_WEIGHT,
     TooManyFragments,
 };
-pub use self::walk::{Order, Walk};
+pub use self::walk::{BspWalk, WalkOrder};
 
 use std::borrow::Cow;
 
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
-use super::{Counts, Work};
+use super::{FaceWork, FragmentCounts};
 use crate::camera::Camera;
 use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes, Sign};
@@ -91,13 +91,13 @@ impl Forest {
 
 /// A tree of planes over all faces of a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tree {
+pub struct BspTree {
     forest: Forest,
     root: u32,
-    counts: Counts,
+    counts: FragmentCounts,
 }
 
-impl Tree {
+impl BspTree {
     /// Builds the tree. About O(n log n) on meshes of small triangles, in parallel; the tree is the
     /// same for any number of threads.
     ///
@@ -108,7 +108,7 @@ impl Tree {
         check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
         let fragments = Fragment::all(scene, &planes);
-        let mut counts = Counts::default();
+        let mut counts = FragmentCounts::default();
         let mut forest = Forest::default();
         let roots = forest.grow(scene, &planes, vec![fragments], &mut counts)?;
         counts.fragments = forest.fragments.len() as u64;
@@ -126,18 +126,18 @@ impl Tree {
     }
 
     /// What building took.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> FragmentCounts {
         self.counts
     }
 
     /// The same with the size of the tree.
-    pub fn work(&self) -> Work {
-        Work::Bsp { counts: self.counts, nodes: self.n_nodes() as u64 }
+    pub fn work(&self) -> FaceWork {
+        FaceWork::Bsp { counts: self.counts, nodes: self.n_nodes() as u64 }
     }
 
     /// The fragments in the order in which the camera of `planes` sees them, with the side of their
     /// plane that the eye is on. In one plane those of the lowest face are the nearest.
-    pub fn walk<'a>(&'a self, planes: &'a Planes<'a>, order: Order) -> Walk<'a> {
+    pub fn walk<'a>(&'a self, planes: &'a Planes<'a>, order: WalkOrder) -> BspWalk<'a> {
         self.forest.walk(planes, self.root, order)
     }
 
@@ -163,7 +163,7 @@ impl Tree {
     fn for_each(&self, scene: &Scene, camera: &Camera, mut show: impl FnMut(Cow<Fragment>, Sign)) {
         let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
         let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));
-        for (fragment, facing) in self.walk(&planes, Order::FarToNear) {
+        for (fragment, facing) in self.walk(&planes, WalkOrder::FarToNear) {
             if facing == Sign::Zero {
                 continue;
             }
@@ -177,9 +177,12 @@ impl Tree {
 /// Builds a tree and paints one view.
 ///
 /// # Errors
-/// As [`Tree::new`].
-pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), TooManyFragments> {
-    let tree = Tree::new(scene)?;
+/// As [`BspTree::new`].
+pub fn solve(
+    scene: &Scene,
+    camera: &Camera,
+) -> Result<(Painting, FragmentCounts), TooManyFragments> {
+    let tree = BspTree::new(scene)?;
     let painting = tree.paint(scene, camera);
     Ok((painting, tree.counts()))
 }

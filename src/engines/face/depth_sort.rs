@@ -87,7 +87,7 @@ const N_SAMPLES: usize = 1024;
 
 /// Why a scene is not sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum Error {
+pub enum DepthSortError {
     /// Told before starting.
     #[error(
         "about {0} pairs of faces overlap in the image and in depth, which would take minutes; \
@@ -115,7 +115,7 @@ pub enum Error {
 
 /// What sorting took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
+pub struct DepthSortCounts {
     /// Pieces that are painted.
     pub fragments: u64,
     /// Times that a fragment was cut in two, not counting cuts at the near plane.
@@ -180,8 +180,11 @@ impl Item {
 /// Paints one view.
 ///
 /// # Errors
-/// See [`enum@Error`].
-pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error> {
+/// See [`enum@DepthSortError`].
+pub fn solve(
+    scene: &Scene,
+    camera: &Camera,
+) -> Result<(Painting, DepthSortCounts), DepthSortError> {
     let (fragments, mut counts) = order(scene, camera)?;
     let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
     let easel = Easel::new(scene, camera);
@@ -197,11 +200,14 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), Error
 /// The fragments of one view from far to near, cut at the near plane, without those edge-on.
 ///
 /// # Errors
-/// See [`enum@Error`].
-pub fn order(scene: &Scene, camera: &Camera) -> Result<(Vec<Fragment>, Counts), Error> {
+/// See [`enum@DepthSortError`].
+pub fn order(
+    scene: &Scene,
+    camera: &Camera,
+) -> Result<(Vec<Fragment>, DepthSortCounts), DepthSortError> {
     let n_piercings = piercing::estimate(scene);
     if n_piercings > MAX_PIERCINGS * scene.triangles().len() as u64 {
-        return Err(Error::TooManyPiercings(n_piercings));
+        return Err(DepthSortError::TooManyPiercings(n_piercings));
     }
     let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
     let easel = Easel::new(scene, camera);
@@ -218,9 +224,9 @@ pub fn order(scene: &Scene, camera: &Camera) -> Result<(Vec<Fragment>, Counts), 
     let mut list = list::List::new(&planes, easel, items);
     let n_pairs = list.estimated_pairs(N_SAMPLES);
     if n_pairs > MAX_PAIRS {
-        return Err(Error::TooManyPairs(n_pairs));
+        return Err(DepthSortError::TooManyPairs(n_pairs));
     }
-    let mut counts = Counts::default();
+    let mut counts = DepthSortCounts::default();
     let order = list.sorted(&mut counts)?;
     let fragments = order.iter().map(|&number| list.item(number).fragment.clone()).collect();
     Ok((fragments, counts))

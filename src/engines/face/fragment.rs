@@ -12,7 +12,7 @@
 //! Cutting keeps a fragment strictly convex: no corner lies on the line through its neighbors, and
 //! a cut that only touches is none.
 
-use super::Counts;
+use super::FragmentCounts;
 use super::painting::{NO_LINE, Painting};
 use crate::camera::{Camera, Frame, Projection};
 use crate::classify::ImagePoint;
@@ -33,7 +33,7 @@ pub enum Border {
 
 /// A corner of a fragment and the side that begins there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct FragmentSide {
     /// Where the side begins.
     pub corner: Corner,
     /// What it lies on.
@@ -46,7 +46,7 @@ pub struct Side {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fragment {
     triangle: u32,
-    sides: Vec<Side>,
+    sides: Vec<FragmentSide>,
 }
 
 /// How a fragment stands to a plane.
@@ -75,7 +75,7 @@ impl Fragment {
             // An edge of another face may run along a diagonal of this one.
             let edge = topology.find_edge(from, to);
             let edge = edge.filter(|&edge| topology.uses(edge).iter().any(|u| u.face() == face));
-            Side {
+            FragmentSide {
                 corner: planes.vertex(from),
                 border: Border::Edge([from, to]),
                 line: edge.unwrap_or(NO_LINE),
@@ -96,7 +96,7 @@ impl Fragment {
     }
 
     /// Its sides, three or more, in the order in which the triangle is wound.
-    pub fn sides(&self) -> &[Side] {
+    pub fn sides(&self) -> &[FragmentSide] {
         &self.sides
     }
 
@@ -143,7 +143,8 @@ impl Fragment {
         let n = self.sides.len();
         let mut front = Vec::with_capacity(n + 1);
         let mut back = Vec::with_capacity(n + 1);
-        let cut_from = |corner: Corner| Side { corner, border: Border::Cut(name), line: NO_LINE };
+        let cut_from =
+            |corner: Corner| FragmentSide { corner, border: Border::Cut(name), line: NO_LINE };
         for (i, side) in self.sides.iter().enumerate() {
             let j = (i + 1) % n;
             let (from, to) = (values[i].1, values[j].1);
@@ -168,7 +169,7 @@ impl Fragment {
                 };
                 let ends = [&side.corner, &self.sides[j].corner];
                 let corner = planes.corner_between(ends, [values[i].0, values[j].0], place);
-                let rest = Side { corner, ..*side };
+                let rest = FragmentSide { corner, ..*side };
                 let (of_front, of_back) = if from == Sign::Positive {
                     (cut_from(corner), rest)
                 } else {
@@ -188,7 +189,7 @@ impl Fragment {
         self,
         planes: &Planes,
         plane: &Plane,
-        counts: &mut Counts,
+        counts: &mut FragmentCounts,
     ) -> (Option<Self>, Option<Self>) {
         counts.tests += 1;
         match self.position(planes, plane) {
@@ -280,7 +281,7 @@ impl<'a> Easel<'a> {
     /// edge-on fragments are left out.
     pub fn paint(&self, painting: &mut Painting, fragment: &Fragment, facing: Sign) {
         let sides = &fragment.sides;
-        let image = |side: &Side| self.image(&side.corner).image();
+        let image = |side: &FragmentSide| self.image(&side.corner).image();
         let n = sides.len();
         match facing {
             Sign::Zero => {}

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::painting::NO_LINE;
-use super::region::{Grid, Region};
+use super::region::{Region, SnapGrid};
 use crate::camera::{Camera, Frame, Projection};
 use crate::engines::image::raster::Corners;
 use crate::model::scene::Scene;
@@ -55,7 +55,7 @@ impl Nearness {
 
 /// Where one flat is as seen from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum DepthOrder {
     /// Farther, wherever both are seen.
     Behind,
     /// Nearer, wherever both are seen.
@@ -91,7 +91,7 @@ pub struct Images<'a> {
     /// left out.
     pub flats: Vec<Flat>,
     /// The grid that all regions are on.
-    pub grid: Grid,
+    pub grid: SnapGrid,
     /// The box around all images.
     pub bounds: (DVec2, DVec2),
 }
@@ -103,7 +103,7 @@ impl<'a> Images<'a> {
         let positions = scene.mesh().positions();
         let (sight, solid) = (Sight::new(positions, camera), Solid::new(positions));
         let bounds = corners.bounds().unwrap_or_default();
-        let grid = Grid::new(bounds.0, bounds.1);
+        let grid = SnapGrid::new(bounds.0, bounds.1);
         let frame = camera.frame();
         let groups = groups(scene, &solid);
         let flats = groups.par_iter().filter_map(|group| {
@@ -138,17 +138,17 @@ impl<'a> Images<'a> {
 
     /// Where flat `other` is as seen from flat `this`.
     ///
-    /// Exact unless it is [`Place::Crossing`]; of flats in one plane the first is in front.
-    pub fn place(&self, this: usize, other: usize) -> Place {
+    /// Exact unless it is [`DepthOrder::Crossing`]; of flats in one plane the first is in front.
+    pub fn place(&self, this: usize, other: usize) -> DepthOrder {
         match self.side(this, other) {
-            Some(Sign::Positive) => Place::Behind,
-            Some(Sign::Negative) => Place::InFront,
-            Some(Sign::Zero) if other > this => Place::Behind,
-            Some(Sign::Zero) => Place::InFront,
+            Some(Sign::Positive) => DepthOrder::Behind,
+            Some(Sign::Negative) => DepthOrder::InFront,
+            Some(Sign::Zero) if other > this => DepthOrder::Behind,
+            Some(Sign::Zero) => DepthOrder::InFront,
             None => match self.side(other, this) {
-                Some(Sign::Positive) => Place::InFront,
-                Some(Sign::Negative) => Place::Behind,
-                Some(Sign::Zero) | None => Place::Crossing,
+                Some(Sign::Positive) => DepthOrder::InFront,
+                Some(Sign::Negative) => DepthOrder::Behind,
+                Some(Sign::Zero) | None => DepthOrder::Crossing,
             },
         }
     }
@@ -237,7 +237,7 @@ fn is_flat(triangles: &[[u32; 3]], solid: &Solid) -> bool {
 
 /// The image of a triangle, cut at the near plane, counter-clockwise, with the edges of the mesh that
 /// its sides lie on.
-fn rings(scene: &Scene, corners: &Corners, number: u32, grid: &Grid) -> Vec<[(DVec2, u32); 3]> {
+fn rings(scene: &Scene, corners: &Corners, number: u32, grid: &SnapGrid) -> Vec<[(DVec2, u32); 3]> {
     let [a, b, c] = scene.triangles()[number as usize];
     let line = |a, b| scene.topology().find_edge(a, b).unwrap_or(NO_LINE);
     let lines = [line(a, b), line(b, c), line(c, a)];

@@ -4,13 +4,13 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::boxes::BoxIndex;
-use super::painting::{Painting, Piece};
-use super::region::{Grid, Region};
+use super::painting::{PaintedPiece, Painting};
+use super::region::{Region, SnapGrid};
 
 /// A painting of regions that do not overlap, listed by face; faces may come several times in a row.
 ///
 /// What meets of one face is one piece. O(n log n) in the sides of each face, in parallel.
-pub fn by_face(regions: impl IntoIterator<Item = (u32, Vec<Region>)>, grid: &Grid) -> Painting {
+pub fn by_face(regions: impl IntoIterator<Item = (u32, Vec<Region>)>, grid: &SnapGrid) -> Painting {
     let mut faces: Vec<(u32, Vec<Region>)> = Vec::new();
     for (face, regions) in regions {
         match faces.last_mut() {
@@ -31,7 +31,7 @@ pub fn by_face(regions: impl IntoIterator<Item = (u32, Vec<Region>)>, grid: &Gri
 }
 
 /// Adds the parts of a region as pieces of a face.
-pub fn push(painting: &mut Painting, face: u32, region: &Region, grid: &Grid) {
+pub fn push(painting: &mut Painting, face: u32, region: &Region, grid: &SnapGrid) {
     for part in region.parts() {
         let corners =
             part.into_iter().map(|ring| ring.iter().map(|side| (grid.point(side.from), side.line)));
@@ -44,13 +44,16 @@ pub fn push(painting: &mut Painting, face: u32, region: &Region, grid: &Grid) {
 ///
 /// Each piece is clipped by all later ones that overlap it at once, so its border is rounded once.
 /// O(sides of pieces that overlap), in parallel.
-pub fn seen(painting: &Painting) -> (Vec<Region>, Grid) {
+pub fn seen(painting: &Painting) -> (Vec<Region>, SnapGrid) {
     let points = || painting.pieces().flat_map(|piece| piece.rings()).flat_map(|ring| ring.points);
     let nothing = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let (low, high) = points().fold(nothing, |(low, high), &p| (low.min(p), high.max(p)));
-    let grid =
-        if low.is_finite() { Grid::new(low, high) } else { Grid::new(DVec2::ZERO, DVec2::ONE) };
-    let pieces: Vec<Piece> = painting.pieces().collect();
+    let grid = if low.is_finite() {
+        SnapGrid::new(low, high)
+    } else {
+        SnapGrid::new(DVec2::ZERO, DVec2::ONE)
+    };
+    let pieces: Vec<PaintedPiece> = painting.pieces().collect();
     let regions: Vec<Region> = pieces.par_iter().map(|piece| region(piece, &grid)).collect();
     if painting.is_disjoint {
         return (regions, grid);
@@ -70,7 +73,7 @@ pub fn seen(painting: &Painting) -> (Vec<Region>, Grid) {
 }
 
 /// A piece as a region on a grid.
-fn region(piece: &Piece, grid: &Grid) -> Region {
+fn region(piece: &PaintedPiece, grid: &SnapGrid) -> Region {
     Region::of_rings(
         piece
             .rings()

@@ -40,14 +40,14 @@ pub mod work;
 use thiserror::Error;
 
 pub use self::bsp::TooManyFragments;
-pub use self::painting::{Painting, Piece};
-pub use self::work::{Counts, Work};
+pub use self::painting::{PaintedPiece, Painting};
+pub use self::work::{FaceWork, FragmentCounts};
 use crate::camera::Camera;
 use crate::model::scene::Scene;
 
 /// The face engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Engine {
+pub enum FaceEngine {
     /// One that suits the scene.
     #[default]
     Auto,
@@ -63,7 +63,7 @@ pub enum Engine {
     WeilerAtherton,
 }
 
-impl Engine {
+impl FaceEngine {
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -119,27 +119,27 @@ pub enum FaceError {
     TooManyFragments(#[from] TooManyFragments),
     /// Sorting would take too long, or finds no order.
     #[error(transparent)]
-    NoOrder(#[from] depth_sort::Error),
+    NoOrder(#[from] depth_sort::DepthSortError),
 }
 
 /// What engines can be told.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Settings {
-    /// Width of a leaf in image units, for [`Engine::Warnock`]; `None` for one that suits the image.
+pub struct FaceOptions {
+    /// Width of a leaf in image units, for [`FaceEngine::Warnock`]; `None` for one that suits the image.
     pub leaf: Option<f64>,
-    /// How [`Engine::Warnock`] divides windows.
+    /// How [`FaceEngine::Warnock`] divides windows.
     pub subdivision: warnock::Subdivision,
 }
 
-/// Up to so many triangles [`Engine::Auto`] takes [`Engine::WeilerAtherton`], whose regions are exact
-/// and whose files are the smallest; beyond, [`Engine::Bsp`] is faster.
+/// Up to so many triangles [`FaceEngine::Auto`] takes [`FaceEngine::WeilerAtherton`], whose regions are exact
+/// and whose files are the smallest; beyond, [`FaceEngine::Bsp`] is faster.
 pub const MOST_EXACT: usize = 6_000;
 
 /// A scene made ready for an engine, once for any number of views.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     scene: &'a Scene,
-    engine: Engine,
+    engine: FaceEngine,
     /// Whether another engine may stand in where this one would take too long.
     is_free: bool,
     trees: Trees,
@@ -149,37 +149,37 @@ pub struct Prepared<'a> {
 #[derive(Debug)]
 enum Trees {
     None,
-    Planes(bsp::Tree),
-    Octants(octree::Tree),
+    Planes(bsp::BspTree),
+    Octants(octree::Octree),
 }
 
 impl<'a> Prepared<'a> {
     /// Chooses the engine and does what does not depend on the view.
     ///
-    /// [`Engine::Auto`] takes [`Engine::Warnock`] for faces that pierce each other in heaps, which the
+    /// [`FaceEngine::Auto`] takes [`FaceEngine::Warnock`] for faces that pierce each other in heaps, which the
     /// others would cut into millions of fragments; of the rest see [`MOST_EXACT`].
     ///
     /// # Errors
     /// [`FaceError::TooManyFragments`].
-    pub fn new(scene: &'a Scene, engine: Engine) -> Result<Self, FaceError> {
-        let is_free = engine == Engine::Auto;
+    pub fn new(scene: &'a Scene, engine: FaceEngine) -> Result<Self, FaceError> {
+        let is_free = engine == FaceEngine::Auto;
         let engine = match engine {
-            Engine::Auto if bsp::check_piercings(scene).is_err() => Engine::Warnock,
-            Engine::Auto if scene.triangles().len() <= MOST_EXACT => Engine::WeilerAtherton,
-            Engine::Auto => Engine::Bsp,
+            FaceEngine::Auto if bsp::check_piercings(scene).is_err() => FaceEngine::Warnock,
+            FaceEngine::Auto if scene.triangles().len() <= MOST_EXACT => FaceEngine::WeilerAtherton,
+            FaceEngine::Auto => FaceEngine::Bsp,
             named => named,
         };
         let trees = match engine {
-            Engine::Bsp => Trees::Planes(bsp::Tree::new(scene)?),
-            Engine::Octree => Trees::Octants(octree::Tree::new(scene)?),
+            FaceEngine::Bsp => Trees::Planes(bsp::BspTree::new(scene)?),
+            FaceEngine::Octree => Trees::Octants(octree::Octree::new(scene)?),
             _ => Trees::None,
         };
         Ok(Self { scene, engine, is_free, trees })
     }
 
-    /// The engine that was chosen; where it would take too long for a view, [`Work::engine`] tells
+    /// The engine that was chosen; where it would take too long for a view, [`FaceWork::engine`] tells
     /// which one stood in.
-    pub fn engine(&self) -> Engine {
+    pub fn engine(&self) -> FaceEngine {
         self.engine
     }
 
@@ -196,8 +196,8 @@ impl<'a> Prepared<'a> {
     pub fn solve(
         &self,
         camera: &Camera,
-        settings: &Settings,
-    ) -> Result<(Painting, Work), FaceError> {
+        settings: &FaceOptions,
+    ) -> Result<(Painting, FaceWork), FaceError> {
         let scene = self.scene;
         match (self.engine, &self.trees) {
             (_, Trees::Planes(tree)) => Ok((tree.paint(scene, camera), tree.work())),
@@ -205,31 +205,35 @@ impl<'a> Prepared<'a> {
                 let (painting, hidden) = tree.paint_seen(scene, camera);
                 Ok((painting, tree.work(hidden)))
             }
-            (Engine::DepthSort, _) => {
+            (FaceEngine::DepthSort, _) => {
                 let (painting, counts) = depth_sort::solve(scene, camera)?;
-                Ok((painting, Work::DepthSort(counts)))
+                Ok((painting, FaceWork::DepthSort(counts)))
             }
-            (Engine::Warnock, _) => self.by_windows(camera, settings),
-            (Engine::Auto | Engine::WeilerAtherton | Engine::Bsp | Engine::Octree, _) => {
-                match weiler_atherton::solve(scene, camera) {
-                    Ok((painting, counts)) => Ok((painting, Work::WeilerAtherton(counts))),
-                    Err(FaceError::TooManyPairs { .. }) if self.is_free => {
-                        self.by_windows(camera, settings)
-                    }
-                    Err(error) => Err(error),
+            (FaceEngine::Warnock, _) => self.by_windows(camera, settings),
+            (
+                FaceEngine::Auto
+                | FaceEngine::WeilerAtherton
+                | FaceEngine::Bsp
+                | FaceEngine::Octree,
+                _,
+            ) => match weiler_atherton::solve(scene, camera) {
+                Ok((painting, counts)) => Ok((painting, FaceWork::WeilerAtherton(counts))),
+                Err(FaceError::TooManyPairs { .. }) if self.is_free => {
+                    self.by_windows(camera, settings)
                 }
-            }
+                Err(error) => Err(error),
+            },
         }
     }
 
     fn by_windows(
         &self,
         camera: &Camera,
-        settings: &Settings,
-    ) -> Result<(Painting, Work), FaceError> {
-        let Settings { leaf, subdivision } = *settings;
-        let options = warnock::Options { leaf, subdivision, window: None };
+        settings: &FaceOptions,
+    ) -> Result<(Painting, FaceWork), FaceError> {
+        let FaceOptions { leaf, subdivision } = *settings;
+        let options = warnock::WarnockOptions { leaf, subdivision, window: None };
         let (painting, counts) = warnock::solve(self.scene, camera, &options)?;
-        Ok((painting, Work::Warnock(counts)))
+        Ok((painting, FaceWork::Warnock(counts)))
     }
 }

@@ -53,10 +53,10 @@ mod seams;
 
 pub use self::hidden::Hidden;
 
-use super::bsp::{Forest, Order, TooManyFragments, check_piercings};
+use super::bsp::{Forest, TooManyFragments, WalkOrder, check_piercings};
 use super::fragment::{Easel, Fragment};
 use super::painting::Painting;
-use super::{Counts, Work};
+use super::{FaceWork, FragmentCounts};
 use crate::camera::Camera;
 use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes, Sign};
@@ -96,14 +96,14 @@ struct Octant {
 
 /// A tree of octants over all faces of a scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tree {
+pub struct Octree {
     octants: Vec<Octant>,
     forest: Forest,
     /// How many fragments each face is cut into.
     of_face: Vec<u32>,
     /// The same for each triangle.
     of_triangle: Vec<u32>,
-    counts: Counts,
+    counts: FragmentCounts,
 }
 
 /// An octant to be built.
@@ -116,12 +116,12 @@ struct Task {
     fragments: Vec<Fragment>,
 }
 
-impl Tree {
+impl Octree {
     /// Builds the tree, all octants of one depth in parallel; it is the same for any number of
     /// threads. O(n log n) on meshes of small triangles.
     ///
     /// # Errors
-    /// When there would be too many fragments, as for [`bsp::Tree::new`](super::bsp::Tree::new).
+    /// When there would be too many fragments, as for [`bsp::BspTree::new`](super::bsp::BspTree::new).
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
         check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
@@ -132,12 +132,12 @@ impl Tree {
         let mut tasks = vec![Task { link: None, depth: 0, low, high, fragments }];
         let mut octants: Vec<Octant> = Vec::new();
         let mut leaves = Vec::new();
-        let mut counts = Counts::default();
+        let mut counts = FragmentCounts::default();
         while !tasks.is_empty() {
             let grown: Vec<_> = tasks
                 .into_par_iter()
                 .map(|task| {
-                    let mut counts = Counts::default();
+                    let mut counts = FragmentCounts::default();
                     let (low, high) = bounds(&task.fragments);
                     (low, high, task.link, part(&planes, task, &mut counts), counts)
                 })
@@ -189,14 +189,14 @@ impl Tree {
     }
 
     /// What building took.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> FragmentCounts {
         self.counts
     }
 
     /// The same with the size of the tree and what a view left out.
-    pub fn work(&self, hidden: Hidden) -> Work {
+    pub fn work(&self, hidden: Hidden) -> FaceWork {
         let (octants, nodes) = (self.octants.len() as u64, self.forest.n_nodes() as u64);
-        Work::Octree { counts: self.counts, octants, nodes, hidden }
+        FaceWork::Octree { counts: self.counts, octants, nodes, hidden }
     }
 
     /// Number of octants, leaves included.
@@ -210,9 +210,9 @@ impl Tree {
         let easel = Easel::new(scene, camera);
         let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));
         let mut painting = Painting::new(false);
-        let mut leaves = Leaves::new(self, &planes, Order::FarToNear);
+        let mut leaves = Leaves::new(self, &planes, WalkOrder::FarToNear);
         while let Some(root) = leaves.next(|_| true) {
-            for (fragment, facing) in self.forest.walk(&planes, root, Order::FarToNear) {
+            for (fragment, facing) in self.forest.walk(&planes, root, WalkOrder::FarToNear) {
                 if facing == Sign::Zero {
                     continue;
                 }
@@ -227,14 +227,14 @@ impl Tree {
 
 /// The leaves in order of sight.
 struct Leaves<'a> {
-    tree: &'a Tree,
+    tree: &'a Octree,
     planes: &'a Planes<'a>,
-    order: Order,
+    order: WalkOrder,
     waiting: Vec<u32>,
 }
 
 impl<'a> Leaves<'a> {
-    fn new(tree: &'a Tree, planes: &'a Planes<'a>, order: Order) -> Self {
+    fn new(tree: &'a Octree, planes: &'a Planes<'a>, order: WalkOrder) -> Self {
         Self { tree, planes, order, waiting: vec![0] }
     }
 
@@ -258,8 +258,8 @@ impl<'a> Leaves<'a> {
                     // Numbers that differ from the nearest in fewer axes come earlier: 0, 1, 2, …
                     let nth = |k: usize| numbers[nearest ^ k];
                     match self.order {
-                        Order::NearToFar => self.waiting.extend((0..8).rev().map(nth)),
-                        Order::FarToNear => self.waiting.extend((0..8).map(nth)),
+                        WalkOrder::NearToFar => self.waiting.extend((0..8).rev().map(nth)),
+                        WalkOrder::FarToNear => self.waiting.extend((0..8).map(nth)),
                     }
                 }
             }
@@ -273,7 +273,7 @@ enum Parted {
 }
 
 /// Cuts fragments at the three planes through the center of an octant.
-fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
+fn part(planes: &Planes, task: Task, counts: &mut FragmentCounts) -> Parted {
     let center = task.low + (task.high - task.low) / 2.0;
     if task.fragments.len() <= LEAF_CAPACITY || task.depth >= MAX_DEPTH || !center.is_finite() {
         return Parted::Leaf(task.fragments);
@@ -281,7 +281,7 @@ fn part(planes: &Planes, task: Task, counts: &mut Counts) -> Parted {
     let across = [0u8, 1, 2]
         .map(|axis| planes.plane(PlaneName::Across { axis, at: center[usize::from(axis)] }));
     let n = task.fragments.len();
-    let mut of_parts = Counts::default();
+    let mut of_parts = FragmentCounts::default();
     let mut parts: [Vec<Fragment>; 8] = Default::default();
     parts[0] = task.fragments.clone();
     for (axis, plane) in across.iter().enumerate() {
@@ -321,12 +321,15 @@ fn bounds(fragments: &[Fragment]) -> (DVec3, DVec3) {
     (low, corners().fold(DVec3::NEG_INFINITY, |high, c| high.max(c.point + c.error)))
 }
 
-/// Builds a tree and paints one view, leaving out what it finds hidden: see [`Tree::paint_seen`].
+/// Builds a tree and paints one view, leaving out what it finds hidden: see [`Octree::paint_seen`].
 ///
 /// # Errors
-/// As [`Tree::new`].
-pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), TooManyFragments> {
-    let tree = Tree::new(scene)?;
+/// As [`Octree::new`].
+pub fn solve(
+    scene: &Scene,
+    camera: &Camera,
+) -> Result<(Painting, FragmentCounts), TooManyFragments> {
+    let tree = Octree::new(scene)?;
     let (painting, _) = tree.paint_seen(scene, camera);
     Ok((painting, tree.counts()))
 }

@@ -29,7 +29,7 @@ pub struct Painting {
 
 /// A piece of a face.
 #[derive(Debug, Clone, Copy)]
-pub struct Piece<'a> {
+pub struct PaintedPiece<'a> {
     /// The face of the mesh.
     pub face: u32,
     painting: &'a Painting,
@@ -89,19 +89,19 @@ impl Painting {
     }
 
     /// The pieces in the order of painting.
-    pub fn pieces(&self) -> impl ExactSizeIterator<Item = Piece<'_>> {
+    pub fn pieces(&self) -> impl ExactSizeIterator<Item = PaintedPiece<'_>> {
         (0..self.pieces.len()).map(|number| {
             let first_ring = match number.checked_sub(1) {
                 Some(before) => self.pieces[before].1,
                 None => 0,
             };
             let (face, last_ring) = self.pieces[number];
-            Piece { face, painting: self, first_ring, last_ring }
+            PaintedPiece { face, painting: self, first_ring, last_ring }
         })
     }
 }
 
-impl<'a> Piece<'a> {
+impl<'a> PaintedPiece<'a> {
     /// The outer ring, then the holes.
     pub fn rings(&self) -> impl ExactSizeIterator<Item = Ring<'a>> + use<'a> {
         let painting = self.painting;

@@ -57,12 +57,12 @@ const STEPS_LOG2: i32 = 50;
 
 /// The map between the image and the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grid {
+pub struct SnapGrid {
     origin: DVec2,
     step: f64,
 }
 
-impl Grid {
+impl SnapGrid {
     /// The grid of an image that lies between `low` and `high`.
     pub fn new(low: DVec2, high: DVec2) -> Self {
         let size = (high - low).max_element();
@@ -96,7 +96,7 @@ impl Grid {
 
 /// One side of a region's border, with the region on its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct RegionSide {
     /// Where it begins.
     pub from: DVec2,
     /// Where it ends.
@@ -109,7 +109,7 @@ pub struct Side {
 /// A region: any number of parts with any number of holes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Region {
-    sides: Vec<Side>,
+    sides: Vec<RegionSide>,
     /// Where each ring ends among the sides, and whether it is the outer one of a part.
     rings: Vec<(u32, bool)>,
     low: DVec2,
@@ -118,9 +118,9 @@ pub struct Region {
 
 /// The line that a side lies on, as the library carries it along.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Line(u32);
+struct LineTag(u32);
 
-impl OverlayEdgeData for Line {
+impl OverlayEdgeData for LineTag {
     type Store = ();
 
     fn merge(both: EdgeDataMerge<ShapeCountBoolean, Self>, _: &mut ()) -> Self {
@@ -140,7 +140,7 @@ impl Region {
             let corners: Vec<(DVec2, u32)> = ring.into_iter().collect();
             for (k, &(from, line)) in corners.iter().enumerate() {
                 let (to, _) = corners[(k + 1) % corners.len()];
-                sides.push(Side { from, to, line });
+                sides.push(RegionSide { from, to, line });
             }
         }
         operated(OverlayRule::Subject, &sides, &[])
@@ -152,7 +152,7 @@ impl Region {
     }
 
     /// All sides of its border.
-    pub fn sides(&self) -> &[Side] {
+    pub fn sides(&self) -> &[RegionSide] {
         &self.sides
     }
 
@@ -192,7 +192,7 @@ impl Region {
     /// What of it lies outside several regions.
     #[must_use]
     pub fn without_all<'a>(&self, others: impl IntoIterator<Item = &'a Self>) -> Self {
-        let clip: Vec<Side> =
+        let clip: Vec<RegionSide> =
             others.into_iter().flat_map(|other| other.sides.iter().copied()).collect();
         if clip.is_empty() {
             return self.clone();
@@ -205,14 +205,14 @@ impl Region {
     /// Borders that two of them share are rounded apart where only one has a corner; they are made one
     /// before, so that no crack stays between.
     pub fn union<'a>(regions: impl IntoIterator<Item = &'a Self>) -> Self {
-        let sides: Vec<Side> =
+        let sides: Vec<RegionSide> =
             regions.into_iter().flat_map(|region| region.sides.iter().copied()).collect();
         operated(OverlayRule::Subject, &weld::welded(sides), &[])
     }
 
     /// The region as parts: of each the outer ring, then its holes.
-    pub fn parts(&self) -> Vec<Vec<&[Side]>> {
-        let mut parts: Vec<Vec<&[Side]>> = Vec::new();
+    pub fn parts(&self) -> Vec<Vec<&[RegionSide]>> {
+        let mut parts: Vec<Vec<&[RegionSide]>> = Vec::new();
         let mut start = 0;
         for &(end, is_outer) in &self.rings {
             let ring = &self.sides[start..end as usize];
@@ -260,26 +260,26 @@ pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> i128 {
 }
 
 /// In square steps.
-fn area_of(sides: &[Side]) -> f64 {
+fn area_of(sides: &[RegionSide]) -> f64 {
     let Some(first) = sides.first() else { return 0.0 };
     let doubled: i128 = sides.iter().map(|side| turn(first.from, side.from, side.to)).sum();
     doubled as f64 / 2.0
 }
 
 /// Whether a ring is so narrow that rounding alone may have made it.
-fn is_sliver(ring: &[Side]) -> bool {
+fn is_sliver(ring: &[RegionSide]) -> bool {
     let length: f64 = ring.iter().map(|s| s.from.distance(s.to)).sum();
     2.0 * area_of(ring).abs() <= SLIVER_STEPS * length
 }
 
-fn operated(rule: OverlayRule, subject: &[Side], clip: &[Side]) -> Region {
-    let mut overlay = EdgeOverlay::<i64, Line>::new(subject.len() + clip.len());
+fn operated(rule: OverlayRule, subject: &[RegionSide], clip: &[RegionSide]) -> Region {
+    let mut overlay = EdgeOverlay::<i64, LineTag>::new(subject.len() + clip.len());
     overlay.options.preserve_output_collinear = false;
     overlay.solver.precision = PRECISION;
-    let edge = |side: &Side| InputEdge {
+    let edge = |side: &RegionSide| InputEdge {
         a: integers(side.from),
         b: integers(side.to),
-        data: Line(side.line),
+        data: LineTag(side.line),
     };
     overlay.add_edges(subject.iter().map(edge), ShapeType::Subject);
     overlay.add_edges(clip.iter().map(edge), ShapeType::Clip);
@@ -288,7 +288,7 @@ fn operated(rule: OverlayRule, subject: &[Side], clip: &[Side]) -> Region {
     for part in overlay.build_vector_shapes(rule, FillRule::NonZero) {
         for (number, ring) in part.into_iter().enumerate() {
             let start = region.sides.len();
-            region.sides.extend(ring.iter().map(|edge| Side {
+            region.sides.extend(ring.iter().map(|edge| RegionSide {
                 from: whole(edge.a),
                 to: whole(edge.b),
                 line: edge.data.0,
@@ -331,7 +331,7 @@ mod tests {
 
     #[test]
     fn round_numbers_of_the_image_are_points_of_the_grid() {
-        let grid = Grid::new(dvec2(9.5, 9.5), dvec2(25.5, 25.5));
+        let grid = SnapGrid::new(dvec2(9.5, 9.5), dvec2(25.5, 25.5));
         for p in [dvec2(18.5, 12.5), dvec2(9.5, 25.5), dvec2(10.0, 17.0)] {
             assert_eq!(grid.point(grid.snap(p)), p);
         }

@@ -41,9 +41,9 @@ use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::images::{Images, Place};
+use super::images::{DepthOrder, Images};
 use super::painting::{NO_LINE, Painting};
-use super::region::{Region, Side};
+use super::region::{Region, RegionSide};
 use super::{FaceError, merge};
 use crate::camera::Camera;
 use crate::engines::image::depth::Depth;
@@ -67,7 +67,7 @@ pub enum Subdivision {
 
 /// The window that is divided, in leaves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Options {
+pub struct WarnockOptions {
     /// Width and height of a leaf in image units; `None` for a thousandth of the image's diagonal.
     pub leaf: Option<f64>,
     /// The first window, as (lowest, highest) corner; `None` for the box around the image. It is
@@ -79,7 +79,7 @@ pub struct Options {
 
 /// How windows came to their end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
+pub struct WarnockCounts {
     /// Windows that were looked at: the sum of all below.
     pub windows: u64,
     /// Windows that were divided.
@@ -105,12 +105,12 @@ struct Tally {
 }
 
 impl Tally {
-    fn counts(self) -> Counts {
+    fn counts(self) -> WarnockCounts {
         let [divided, empty, covered, single, leaves] =
             [self.divided, self.empty, self.covered, self.single, self.leaves]
                 .map(AtomicU64::into_inner);
         let windows = divided + empty + covered + single + leaves;
-        Counts { windows, divided, empty, covered, single, leaves }
+        WarnockCounts { windows, divided, empty, covered, single, leaves }
     }
 }
 
@@ -128,11 +128,11 @@ fn count(tally: &AtomicU64) {
 pub fn solve(
     scene: &Scene,
     camera: &Camera,
-    options: &Options,
-) -> Result<(Painting, Counts), FaceError> {
+    options: &WarnockOptions,
+) -> Result<(Painting, WarnockCounts), FaceError> {
     let images = Images::new(scene, camera);
     if images.flats.is_empty() {
-        return Ok((Painting::new(true), Counts::default()));
+        return Ok((Painting::new(true), WarnockCounts::default()));
     }
     let (low, high) = options.window.unwrap_or(images.bounds);
     let diagonal = (high - low).length();
@@ -243,9 +243,9 @@ impl Warnock<'_> {
     /// Whether a polygon that surrounds a window is in front of another all over it.
     fn hides(&self, front: u32, other: u32, bounds: (DVec2, DVec2)) -> bool {
         match self.images.place(front as usize, other as usize) {
-            Place::Behind => true,
-            Place::InFront => false,
-            Place::Crossing => {
+            DepthOrder::Behind => true,
+            DepthOrder::InFront => false,
+            DepthOrder::Crossing => {
                 let corners = corners(bounds);
                 let farthest = corners
                     .map(|c| self.nearness(front, c))
@@ -350,7 +350,7 @@ fn corners((low, high): (DVec2, DVec2)) -> [DVec2; 4] {
 }
 
 /// Whether a side runs through the inside of a rectangle.
-fn reaches(side: &Side, low: DVec2, high: DVec2) -> bool {
+fn reaches(side: &RegionSide, low: DVec2, high: DVec2) -> bool {
     let (a, b) = (side.from, side.to);
     if a.max(b).cmple(low).any() || a.min(b).cmpge(high).any() {
         return false;

@@ -47,7 +47,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::boxes::BoxIndex;
-use super::images::{Images, Place};
+use super::images::{DepthOrder, Images};
 use super::painting::Painting;
 use super::region::Region;
 use super::{FaceError, merge};
@@ -66,7 +66,7 @@ const MIN_LEN: usize = 8;
 
 /// What clipping took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
+pub struct WeilerAthertonCounts {
     /// Polygons that were clipped: faces, or triangles of bent ones, in the image.
     pub polygons: u64,
     /// Regions that were found.
@@ -89,7 +89,10 @@ pub struct Counts {
 ///
 /// # Errors
 /// [`FaceError::TooManyFaces`], [`FaceError::TooManyPairs`].
-pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceError> {
+pub fn solve(
+    scene: &Scene,
+    camera: &Camera,
+) -> Result<(Painting, WeilerAthertonCounts), FaceError> {
     let images = Images::new(scene, camera);
     let n = images.flats.len();
     if n > MOST_FACES {
@@ -113,7 +116,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceE
     for (k, &flat) in order.iter().enumerate() {
         rank[flat as usize] = k;
     }
-    let mut work = Work {
+    let mut work = Clipping {
         images: &images,
         clipping: vec![false; n],
         drawn: vec![Vec::new(); n],
@@ -148,7 +151,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceE
             let goes_first = |&other: &u32| {
                 work.comparisons.fetch_add(1, Ordering::Relaxed);
                 !is_begun[other as usize]
-                    && images.place(first as usize, other as usize) == Place::InFront
+                    && images.place(first as usize, other as usize) == DepthOrder::InFront
                     && !left[other as usize].within(&region).is_empty()
             };
             let before: Vec<u32> =
@@ -176,7 +179,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceE
     }
     let faces = images.flats.iter().map(|flat| flat.face).zip(work.drawn);
     let painting = merge::by_face(faces, &images.grid);
-    let counts = Counts {
+    let counts = WeilerAthertonCounts {
         polygons: n as u64,
         regions: painting.len() as u64,
         comparisons: work.comparisons.into_inner(),
@@ -187,7 +190,7 @@ pub fn solve(scene: &Scene, camera: &Camera) -> Result<(Painting, Counts), FaceE
     Ok((painting, counts))
 }
 
-struct Work<'a> {
+struct Clipping<'a> {
     images: &'a Images<'a>,
     /// The set S.
     clipping: Vec<bool>,
@@ -198,15 +201,15 @@ struct Work<'a> {
     nested: u64,
 }
 
-impl Work<'_> {
+impl Clipping<'_> {
     /// What of the rest of polygon `other` lies within `region` of polygon `first` and in front of it.
     fn in_front(&self, first: u32, region: &Region, other: u32, left: &Rest) -> Region {
         let (this, that) = (first as usize, other as usize);
         self.comparisons.fetch_add(1, Ordering::Relaxed);
         match self.images.place(this, that) {
-            Place::Behind => Region::default(),
-            Place::InFront => left.within(region),
-            Place::Crossing => {
+            DepthOrder::Behind => Region::default(),
+            DepthOrder::InFront => left.within(region),
+            DepthOrder::Crossing => {
                 let inside = left.within(region);
                 if inside.is_empty() {
                     return inside;

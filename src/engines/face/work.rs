@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::{Engine, depth_sort, octree, warnock, weiler_atherton};
+use super::{FaceEngine, depth_sort, octree, warnock, weiler_atherton};
 
 /// How often fragments were cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
+pub struct FragmentCounts {
     /// Fragments of faces that there are at the end.
     pub fragments: u64,
     /// Times that a fragment was cut in two, not counting cuts at the near plane.
@@ -15,7 +15,7 @@ pub struct Counts {
     pub tests: u64,
 }
 
-impl Counts {
+impl FragmentCounts {
     pub(super) fn add(&mut self, other: Self) {
         self.fragments += other.fragments;
         self.splits += other.splits;
@@ -27,14 +27,14 @@ impl Counts {
 /// said elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
-pub enum Work {
+pub enum FaceWork {
     /// Of [`depth_sort`].
-    DepthSort(depth_sort::Counts),
+    DepthSort(depth_sort::DepthSortCounts),
     /// Of [`bsp`](super::bsp).
     Bsp {
         /// Of building.
         #[serde(flatten)]
-        counts: Counts,
+        counts: FragmentCounts,
         /// Nodes of the tree.
         nodes: u64,
     },
@@ -42,7 +42,7 @@ pub enum Work {
     Octree {
         /// Of building.
         #[serde(flatten)]
-        counts: Counts,
+        counts: FragmentCounts,
         /// Octants, leaves included.
         octants: u64,
         /// Nodes of the leaves' trees of planes.
@@ -52,20 +52,20 @@ pub enum Work {
         hidden: octree::Hidden,
     },
     /// Of [`warnock`].
-    Warnock(warnock::Counts),
+    Warnock(warnock::WarnockCounts),
     /// Of [`weiler_atherton`].
-    WeilerAtherton(weiler_atherton::Counts),
+    WeilerAtherton(weiler_atherton::WeilerAthertonCounts),
 }
 
-impl Work {
+impl FaceWork {
     /// The engine that did it.
-    pub fn engine(&self) -> Engine {
+    pub fn engine(&self) -> FaceEngine {
         match self {
-            Self::DepthSort(_) => Engine::DepthSort,
-            Self::Bsp { .. } => Engine::Bsp,
-            Self::Octree { .. } => Engine::Octree,
-            Self::Warnock(_) => Engine::Warnock,
-            Self::WeilerAtherton(_) => Engine::WeilerAtherton,
+            Self::DepthSort(_) => FaceEngine::DepthSort,
+            Self::Bsp { .. } => FaceEngine::Bsp,
+            Self::Octree { .. } => FaceEngine::Octree,
+            Self::Warnock(_) => FaceEngine::Warnock,
+            Self::WeilerAtherton(_) => FaceEngine::WeilerAtherton,
         }
     }
 }

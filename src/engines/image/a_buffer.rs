@@ -21,7 +21,7 @@
 
 use super::NOTHING;
 use super::depth::Depth;
-use super::raster::{Raster, Strip, columns};
+use super::raster::{Raster, RowStrip, columns};
 
 /// Samples along each side of a pixel.
 pub const SIDE: u32 = 4;
@@ -39,7 +39,7 @@ pub struct Share {
 
 /// The part of a triangle in a pixel.
 #[derive(Clone, Copy)]
-struct Fragment {
+struct PixelFragment {
     triangle: u32,
     /// Bit `4 · row + column` for each sample covered.
     mask: u16,
@@ -54,11 +54,11 @@ struct Fragment {
 /// `fine` is the picture with [`SIDE`] times as many pixels along each side, see [`finer`](super::PixelMap::finer);
 /// `strip` is one of its strips. Every triangle lets 1 − `opacity` of the light behind it pass.
 /// O(samples covered + fragments log fragments).
-pub fn solve(fine: &Raster, strip: &Strip, opacity: f64, mut pixel: impl FnMut(&[Share])) {
+pub fn solve(fine: &Raster, strip: &RowStrip, opacity: f64, mut pixel: impl FnMut(&[Share])) {
     let width = fine.width() / SIDE;
     let rows = strip.rows.start / SIDE..strip.rows.end / SIDE;
     let mut heads = vec![NOTHING; (width * rows.len() as u32) as usize];
-    let mut fragments: Vec<Fragment> = Vec::new();
+    let mut fragments: Vec<PixelFragment> = Vec::new();
     for &number in strip.triangles {
         collect(fine, strip, number, width, &mut heads, &mut fragments);
     }
@@ -79,11 +79,11 @@ pub fn solve(fine: &Raster, strip: &Strip, opacity: f64, mut pixel: impl FnMut(&
 /// Adds the fragments of a triangle.
 fn collect(
     fine: &Raster,
-    strip: &Strip,
+    strip: &RowStrip,
     number: u32,
     width: u32,
     heads: &mut [u32],
-    fragments: &mut Vec<Fragment>,
+    fragments: &mut Vec<PixelFragment>,
 ) {
     let triangle = fine.triangle(number);
     let edges = triangle.edges();
@@ -99,7 +99,7 @@ fn collect(
             (from.min(part.start / SIDE), to.max(part.end.div_ceil(SIDE)))
         });
         for column in from.min(to)..to {
-            let mut fragment = Fragment {
+            let mut fragment = PixelFragment {
                 triangle: number,
                 mask: 0,
                 farthest: Depth::NEAREST,
@@ -129,7 +129,7 @@ struct Resolver<'a> {
     fine: &'a Raster,
     opacity: f64,
     /// The fragments of the pixel.
-    list: Vec<Fragment>,
+    list: Vec<PixelFragment>,
     shares: Vec<Share>,
 }
 
@@ -141,7 +141,7 @@ impl Resolver<'_> {
         let mut passing = [1.0; SAMPLES as usize];
         if !self.may_cross() {
             for k in 0..self.list.len() {
-                let Fragment { triangle, mask, .. } = self.list[k];
+                let PixelFragment { triangle, mask, .. } = self.list[k];
                 self.take(triangle, mask, &mut passing);
                 if passing.iter().all(|&passing| passing == 0.0) {
                     break;
@@ -152,9 +152,9 @@ impl Resolver<'_> {
         for sample in 0..SAMPLES {
             let (x, y) = (column * SIDE + sample % SIDE, row * SIDE + sample / SIDE);
             let fine = self.fine;
-            let depth = |fragment: &Fragment| fine.triangle(fragment.triangle).plane.at(x, y);
+            let depth = |fragment: &PixelFragment| fine.triangle(fragment.triangle).plane.at(x, y);
             let mask = 1 << sample;
-            let mut here: Vec<Fragment> =
+            let mut here: Vec<PixelFragment> =
                 self.list.iter().filter(|fragment| fragment.mask & mask != 0).copied().collect();
             here.sort_by(|a, b| depth(b).cmp(&depth(a)).then(a.triangle.cmp(&b.triangle)));
             for fragment in here {

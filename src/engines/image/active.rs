@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use super::edge::PixelEdge;
-use super::raster::{Raster, Strip};
+use super::raster::{Raster, RowStrip};
 
 /// An edge and where it meets the row.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +36,7 @@ pub(super) struct EdgeTable {
 
 impl EdgeTable {
     /// The edges that the rows of a strip meet. O(edges log edges).
-    pub(super) fn new(raster: &Raster, strip: &Strip) -> Self {
+    pub(super) fn new(raster: &Raster, strip: &RowStrip) -> Self {
         let mut waiting = Vec::with_capacity(strip.triangles.len() * 2);
         for &triangle in strip.triangles {
             for edge in raster.triangle(triangle).edges().into_iter().flatten() {

@@ -53,14 +53,14 @@ pub mod z_buffer;
 
 use rayon::prelude::*;
 
-pub use self::raster::{PixelMap, Raster, Strip};
+pub use self::raster::{PixelMap, Raster, RowStrip};
 
 /// The number of no triangle: the background.
 pub const NOTHING: u32 = u32::MAX;
 
 /// The image-space engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Engine {
+pub enum ImageEngine {
     /// A depth for each pixel: fast, whatever the scene.
     #[default]
     ZBuffer,
@@ -76,7 +76,7 @@ pub enum Engine {
     Painter,
 }
 
-impl Engine {
+impl ImageEngine {
     /// Every engine, in the order of the documentation.
     pub const ALL: [Self; 6] = [
         Self::ZBuffer,
@@ -91,14 +91,14 @@ impl Engine {
 /// The triangle that each pixel shows, row by row, or [`NOTHING`].
 ///
 /// Keeps the whole picture; [`solve_strip`] does a part of it.
-pub fn solve(raster: &Raster, engine: Engine) -> Vec<u32> {
+pub fn solve(raster: &Raster, engine: ImageEngine) -> Vec<u32> {
     let mut items = vec![NOTHING; raster.width() as usize * raster.height() as usize];
     solve_strips(raster, engine, 0, &mut items);
     items
 }
 
 /// Fills `items`, which are whole strips beginning with number `first`, in parallel.
-pub fn solve_strips(raster: &Raster, engine: Engine, first: usize, items: &mut [u32]) {
+pub fn solve_strips(raster: &Raster, engine: ImageEngine, first: usize, items: &mut [u32]) {
     let of_strip = raster.width() as usize * raster::STRIP_ROWS as usize;
     items.par_chunks_mut(of_strip.max(1)).enumerate().for_each(|(k, items)| {
         solve_strip(raster, &raster.strip(first + k), engine, items);
@@ -106,14 +106,14 @@ pub fn solve_strips(raster: &Raster, engine: Engine, first: usize, items: &mut [
 }
 
 /// Fills the `items` of one strip.
-pub fn solve_strip(raster: &Raster, strip: &Strip, engine: Engine, items: &mut [u32]) {
+pub fn solve_strip(raster: &Raster, strip: &RowStrip, engine: ImageEngine, items: &mut [u32]) {
     items.fill(NOTHING);
     match engine {
-        Engine::ZBuffer => z_buffer::solve(raster, strip, items),
-        Engine::ScanLine => scan_line::solve(raster, strip, items),
-        Engine::Spanning => spanning::solve(raster, strip, items),
-        Engine::Watkins => watkins::solve(raster, strip, items),
-        Engine::RayCast => ray_cast::solve(raster, strip, items),
-        Engine::Painter => painter::solve(raster, strip, items),
+        ImageEngine::ZBuffer => z_buffer::solve(raster, strip, items),
+        ImageEngine::ScanLine => scan_line::solve(raster, strip, items),
+        ImageEngine::Spanning => spanning::solve(raster, strip, items),
+        ImageEngine::Watkins => watkins::solve(raster, strip, items),
+        ImageEngine::RayCast => ray_cast::solve(raster, strip, items),
+        ImageEngine::Painter => painter::solve(raster, strip, items),
     }
 }

@@ -14,7 +14,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::raster::{Corners, PixelMap, Raster, Strip, columns};
+use super::raster::{Corners, PixelMap, Raster, RowStrip, columns};
 use crate::camera::Camera;
 use crate::engines::face::fragment::Easel;
 use crate::engines::face::{bsp, depth_sort};
@@ -41,7 +41,7 @@ pub fn raster(
 ) -> Result<Raster, NoOrder> {
     let fragments = match depth_sort::order(scene, camera) {
         Ok((fragments, _)) => fragments,
-        Err(_) => bsp::Tree::new(scene).map_err(|_| NoOrder)?.order(scene, camera),
+        Err(_) => bsp::BspTree::new(scene).map_err(|_| NoOrder)?.order(scene, camera),
     };
     let (easel, view) = (Easel::new(scene, camera), Corners::new(scene, camera));
     let mut triangles: Vec<([DVec3; 3], u32)> = Vec::with_capacity(fragments.len());
@@ -58,7 +58,7 @@ pub fn raster(
 }
 
 /// Fills the `items` of a strip of a picture that [`raster`] made. O(pixels that its triangles cover).
-pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
+pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
     let width = raster.width();
     for &number in strip.triangles {
         let triangle = raster.triangle(number);

@@ -114,7 +114,7 @@ pub fn columns(edges: &[Option<PixelEdge>; 3], row: u32, width: u32) -> Range<u3
 
 /// Some rows of a picture, and the triangles that may show there.
 #[derive(Debug, Clone)]
-pub struct Strip<'a> {
+pub struct RowStrip<'a> {
     /// The rows.
     pub rows: Range<u32>,
     /// Numbers of triangles of the raster, increasing.
@@ -294,10 +294,13 @@ impl Raster {
     }
 
     /// A strip; panics when there is none of that number.
-    pub fn strip(&self, number: usize) -> Strip<'_> {
+    pub fn strip(&self, number: usize) -> RowStrip<'_> {
         let from = number as u32 * STRIP_ROWS;
         let listed = self.strip_starts[number]..self.strip_starts[number + 1];
-        Strip { rows: from..(from + STRIP_ROWS).min(self.height), triangles: &self.listed[listed] }
+        RowStrip {
+            rows: from..(from + STRIP_ROWS).min(self.height),
+            triangles: &self.listed[listed],
+        }
     }
 }
 

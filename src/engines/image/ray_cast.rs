@@ -19,14 +19,14 @@ use glam::DVec2;
 
 use super::depth::Depth;
 use super::edge::center;
-use super::raster::{Raster, RasterTriangle, Strip};
+use super::raster::{Raster, RasterTriangle, RowStrip};
 
 /// Triangles in a leaf of the tree.
 const LEAF: usize = 4;
 
 /// Fills the `items` of a strip. O(triangles log triangles + pixels × boxes met).
-pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
-    let tree = Tree::new(strip.triangles.iter().map(|&n| (n, raster.triangle(n))).collect());
+pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
+    let tree = RayTree::new(strip.triangles.iter().map(|&n| (n, raster.triangle(n))).collect());
     for (row, items) in strip.rows.clone().zip(items.chunks_exact_mut(raster.width() as usize)) {
         for (column, item) in (0..).zip(items) {
             if let Some(number) = tree.nearest(column, row) {
@@ -49,13 +49,13 @@ struct Node {
     second: u32,
 }
 
-struct Tree {
+struct RayTree {
     /// With their numbers in the raster.
     triangles: Vec<(u32, RasterTriangle)>,
     nodes: Vec<Node>,
 }
 
-impl Tree {
+impl RayTree {
     fn new(triangles: Vec<(u32, RasterTriangle)>) -> Self {
         let mut tree = Self { triangles, nodes: Vec::new() };
         let n = tree.triangles.len();

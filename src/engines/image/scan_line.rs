@@ -11,10 +11,10 @@
 //! Good for: pictures of any height with the memory of one row.
 
 use super::depth::Depth;
-use super::raster::{Raster, Strip, columns};
+use super::raster::{Raster, RowStrip, columns};
 
 /// Fills the `items` of a strip. O(triangles log triangles + pixels they cover).
-pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
+pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
     let width = raster.width();
     let mut waiting: Vec<(u32, u32)> = strip
         .triangles

@@ -20,11 +20,11 @@
 use super::NOTHING;
 use super::active::EdgeTable;
 use super::depth::DepthRow;
-use super::raster::{Raster, Strip};
+use super::raster::{Raster, RowStrip};
 use std::ops::Range;
 
 /// Fills the `items` of a strip. O(rows × (edges log edges + spans × triangles in them)).
-pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
+pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
     let mut edges = EdgeTable::new(raster, strip);
     let mut inside: Vec<Inside> = Vec::new();
     let rows = items.chunks_exact_mut(raster.width() as usize);

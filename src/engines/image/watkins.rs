@@ -20,10 +20,10 @@ use std::cmp::Reverse;
 
 use super::active::EdgeTable;
 use super::depth::{Depth, DepthRow};
-use super::raster::{Raster, Strip};
+use super::raster::{Raster, RowStrip};
 
 /// Fills the `items` of a strip. O(rows × edges met × triangles in H).
-pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
+pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
     let mut edges = EdgeTable::new(raster, strip);
     let mut in_front: Vec<Entry> = Vec::new();
     for (row, items) in strip.rows.clone().zip(items.chunks_exact_mut(raster.width() as usize)) {

@@ -11,10 +11,10 @@
 //! Good for: any scene; the cost hardly depends on how the triangles lie. Keeps a strip of depths.
 
 use super::depth::Depth;
-use super::raster::{Raster, Strip, columns};
+use super::raster::{Raster, RowStrip, columns};
 
 /// Fills the `items` of a strip. O(pixels that its triangles cover).
-pub fn solve(raster: &Raster, strip: &Strip, items: &mut [u32]) {
+pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
     let width = raster.width();
     let mut depths = vec![Depth::default(); items.len()];
     for &number in strip.triangles {

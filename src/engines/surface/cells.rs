@@ -11,9 +11,9 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use super::Order;
-use super::segment::{Cell, Diagonal, Samples, Vertex};
-use super::strip::Strip;
+use super::CellOrder;
+use super::segment::{Cell, Diagonal, HorizonVertex, Samples};
+use super::strip::HorizonStrip;
 use crate::surface::Grid;
 
 impl Samples for Grid {
@@ -24,7 +24,7 @@ impl Samples for Grid {
 
 /// One part of the domain: the lines of the grid by their distance from the eye.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Part {
+pub(super) struct GridPart {
     /// Columns of the grid, the nearest first; the first may lie behind the eye's x.
     pub(super) columns: Vec<u32>,
     /// Rows of the grid, the nearest first; the first may lie behind the eye's y.
@@ -56,7 +56,7 @@ pub(super) enum First {
     Behind,
 }
 
-impl Part {
+impl GridPart {
     /// The sample at a column and row counted from the eye.
     pub(super) fn sample(&self, grid: &Grid, c: usize, r: usize) -> u32 {
         self.rows[r] * grid.xs().len() as u32 + self.columns[c]
@@ -85,32 +85,37 @@ impl Part {
     }
 
     /// Visits every cell that meets the strip and records what is visible in it.
-    pub(super) fn sweep(&self, grid: &Grid, strip: &mut Strip<Grid>, order: Order) {
-        let mut walk = Walk { part: self, grid, strip };
+    pub(super) fn sweep(&self, grid: &Grid, strip: &mut HorizonStrip<Grid>, order: CellOrder) {
+        let mut walk = CellWalk { part: self, grid, strip };
         match order {
-            Order::Rows => walk.rows(),
-            Order::Diagonals => walk.diagonals(),
+            CellOrder::Rows => walk.rows(),
+            CellOrder::Diagonals => walk.diagonals(),
         }
     }
 }
 
-struct Walk<'a, 'b, 'c> {
-    part: &'a Part,
+struct CellWalk<'a, 'b, 'c> {
+    part: &'a GridPart,
     grid: &'a Grid,
-    strip: &'b mut Strip<'c, Grid>,
+    strip: &'b mut HorizonStrip<'c, Grid>,
 }
 
 /// Vertices of neighboring columns of one row.
 #[derive(Default)]
 struct Row {
     begin: usize,
-    vertices: Vec<Vertex>,
+    vertices: Vec<HorizonVertex>,
 }
 
 impl Row {
     /// Holds `columns`, as far as possible from `known`, which is of the same row of the grid or
     /// empty.
-    fn fill(&mut self, known: &Self, columns: Range<usize>, vertex: impl Fn(usize) -> Vertex) {
+    fn fill(
+        &mut self,
+        known: &Self,
+        columns: Range<usize>,
+        vertex: impl Fn(usize) -> HorizonVertex,
+    ) {
         let known_end = known.begin + known.vertices.len();
         let kept = columns.start.max(known.begin)..columns.end.min(known_end);
         self.begin = columns.start;
@@ -126,7 +131,7 @@ impl Row {
     }
 }
 
-impl Walk<'_, '_, '_> {
+impl CellWalk<'_, '_, '_> {
     fn id(&self, c: usize, r: usize) -> u32 {
         self.part.sample(self.grid, c, r)
     }
@@ -237,7 +242,7 @@ impl Walk<'_, '_, '_> {
         self.strip.leave();
     }
 
-    fn draw(&mut self, a: Vertex, b: Vertex, edge: u32) {
+    fn draw(&mut self, a: HorizonVertex, b: HorizonVertex, edge: u32) {
         if let Some(segment) = self.strip.segment(a, b) {
             self.strip.draw(&segment, edge);
         }
@@ -249,7 +254,7 @@ impl Walk<'_, '_, '_> {
         let Cell { near, right, left, far, .. } = *cell;
         let (part, grid, cells) = (self.part, self.grid, self.part.cells());
         let strip = &mut *self.strip;
-        let mut test = |(a, b): (Vertex, Vertex), edge, right_side, on_border| {
+        let mut test = |(a, b): (HorizonVertex, HorizonVertex), edge, right_side, on_border| {
             if on_border {
                 strip.draw_whole(edge);
             } else {

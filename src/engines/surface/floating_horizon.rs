@@ -22,12 +22,12 @@ use std::sync::atomic::AtomicU8;
 use rayon::prelude::*;
 
 use super::SurfaceError;
-use super::cells::{First, Part};
+use super::cells::{First, GridPart};
 use super::max_min::{bounds, parts};
 use super::pieces::{GridPieces, HIDDEN, UPPER};
-use super::plan_predicates::Sight;
-use super::segment::Plane;
-use super::strip::Strip;
+use super::plan_predicates::PlanSight;
+use super::segment::HorizonPlane;
+use super::strip::HorizonStrip;
 use crate::camera::{Camera, Projection};
 use crate::surface::{Grid, Holes};
 
@@ -68,11 +68,11 @@ pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces,
     let done: Vec<_> = parts(grid, camera)
         .par_iter()
         .map(|part| {
-            let sight = Sight::new(camera, part.sx, part.sy, centre);
-            let plane = Plane::new(grid, sight, size);
+            let sight = PlanSight::new(camera, part.sx, part.sy, centre);
+            let plane = HorizonPlane::new(grid, sight, size);
             let reach = 4.0 * plane.reach();
             let range = if perspective { (-1.0, 1.0) } else { (-reach, reach) };
-            let mut strip = Strip::new(plane, range, (true, true), &status);
+            let mut strip = HorizonStrip::new(plane, range, (true, true), &status);
             match family {
                 Family::AlongX => lines_along_x(part, grid, &mut strip),
                 Family::AlongY => lines_along_y(part, grid, &mut strip),
@@ -83,7 +83,7 @@ pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces,
     Ok(GridPieces::of_strips(nx, ny, status, done))
 }
 
-fn lines_along_x(part: &Part, grid: &Grid, strip: &mut Strip<Grid>) {
+fn lines_along_x(part: &GridPart, grid: &Grid, strip: &mut HorizonStrip<Grid>) {
     for r in usize::from(part.first_row == First::Behind)..part.rows.len() {
         let radial = part.radial_rows || (r == 0 && is_radial(part.first_row));
         for c in 0..part.columns.len() - 1 {
@@ -95,7 +95,7 @@ fn lines_along_x(part: &Part, grid: &Grid, strip: &mut Strip<Grid>) {
     }
 }
 
-fn lines_along_y(part: &Part, grid: &Grid, strip: &mut Strip<Grid>) {
+fn lines_along_y(part: &GridPart, grid: &Grid, strip: &mut HorizonStrip<Grid>) {
     for c in usize::from(part.first_column == First::Behind)..part.columns.len() {
         let radial = part.radial_columns || (c == 0 && is_radial(part.first_column));
         for r in 0..part.rows.len() - 1 {
@@ -110,7 +110,13 @@ fn is_radial(first: First) -> bool {
     matches!(first, First::RadialOnBorder | First::RadialInside)
 }
 
-fn draw(strip: &mut Strip<Grid>, (left, right): (u32, u32), edge: u32, radial: bool, cut: bool) {
+fn draw(
+    strip: &mut HorizonStrip<Grid>,
+    (left, right): (u32, u32),
+    edge: u32,
+    radial: bool,
+    cut: bool,
+) {
     if radial {
         strip.draw_whole(edge);
     } else if cut {

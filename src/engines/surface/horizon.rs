@@ -21,25 +21,25 @@ use std::cmp::Ordering;
 
 use self::breaks::left_stop;
 pub(super) use self::breaks::{Break, Kind, Stop};
-use super::segment::{End, Line, Plane, Samples, Segment, Vertex};
+use super::segment::{End, HorizonLine, HorizonPlane, HorizonSegment, HorizonVertex, Samples};
 use super::steps::Steps;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
-    line: Line,
+struct HorizonPiece {
+    line: HorizonLine,
     from: Break,
 }
 
 /// Counts of work, for measuring growth.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct HorizonCounts {
     /// Pieces of horizons that a segment was compared with.
     pub comparisons: u64,
     /// Decisions that rounded numbers could not make.
     pub exact: u64,
 }
 
-impl std::ops::AddAssign for Work {
+impl std::ops::AddAssign for HorizonCounts {
     fn add_assign(&mut self, other: Self) {
         self.comparisons += other.comparisons;
         self.exact += other.exact;
@@ -49,9 +49,9 @@ impl std::ops::AddAssign for Work {
 /// One horizon over a strip of u; see the [module](self).
 pub(super) struct Horizon {
     /// Pieces to the left of the finger, the nearest last.
-    left: Vec<Piece>,
+    left: Vec<HorizonPiece>,
     /// Pieces to the right of the finger, the nearest last. Never empty between calls.
-    right: Vec<Piece>,
+    right: Vec<HorizonPiece>,
     /// Where the strip begins and ends.
     start: f64,
     /// See `start`.
@@ -59,14 +59,14 @@ pub(super) struct Horizon {
     /// 1 for the upper horizon, −1 for the lower one.
     up: f64,
     steps: Steps,
-    pub(super) work: Work,
+    pub(super) work: HorizonCounts,
 }
 
 impl Horizon {
     /// An empty horizon from `from` to `to`; `upper` keeps the highest line, otherwise the lowest.
     pub(super) fn new(from: f64, to: f64, upper: bool) -> Self {
         let from = Break { u: from, error: 0.0, kind: Kind::Border };
-        let right = vec![Piece { line: Line::EMPTY, from }];
+        let right = vec![HorizonPiece { line: HorizonLine::EMPTY, from }];
         let up = if upper { 1.0 } else { -1.0 };
         let steps = Steps::new(from.u, to);
         Self {
@@ -76,7 +76,7 @@ impl Horizon {
             border: to,
             up,
             steps,
-            work: Work::default(),
+            work: HorizonCounts::default(),
         }
     }
 
@@ -86,8 +86,8 @@ impl Horizon {
     #[inline]
     pub(super) fn encloses<S: Samples, const N: usize>(
         &mut self,
-        plane: &Plane<S>,
-        corners: [Vertex; N],
+        plane: &HorizonPlane<S>,
+        corners: [HorizonVertex; N],
         (from, to): (f64, f64),
     ) -> bool {
         self.work.comparisons += 1;
@@ -110,7 +110,7 @@ impl Horizon {
         let pieces = left.iter().chain(right.iter().rev());
         let begins = pieces.clone().skip(1).map(|piece| (piece.from.u, piece.from.error));
         for (piece, (to, to_error)) in pieces.zip(begins.chain([(*border, 0.0)])) {
-            let Piece { line, from: Break { u: from, error: from_error, .. } } = *piece;
+            let HorizonPiece { line, from: Break { u: from, error: from_error, .. } } = *piece;
             let height = if line.is_empty() {
                 f64::NEG_INFINITY
             } else {
@@ -126,8 +126,8 @@ impl Horizon {
     #[inline]
     pub(super) fn add<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
         mut report: impl FnMut(Stop, Stop),
     ) {
         let starts_at_break = self.seek(plane, s);
@@ -196,21 +196,21 @@ impl Horizon {
                     }
                     let crossing = self.crossing(plane, s, &piece, at_start, next, at_end);
                     run = Some(Stop::Inside(crossing));
-                    self.left.push(Piece { line: s.line, from: crossing });
+                    self.left.push(HorizonPiece { line: s.line, from: crossing });
                     on_segment = true;
                 }
                 (Ordering::Greater, Ordering::Less) => {
                     if !on_segment {
-                        self.left.push(Piece { line: s.line, from: start_break });
+                        self.left.push(HorizonPiece { line: s.line, from: start_break });
                     }
                     let crossing = self.crossing(plane, s, &piece, at_start, next, at_end);
                     report(run.take().unwrap_or(start), Stop::Inside(crossing));
-                    self.left.push(Piece { line: piece.line, from: crossing });
+                    self.left.push(HorizonPiece { line: piece.line, from: crossing });
                     on_segment = false;
                 }
                 _ => {
                     if !on_segment {
-                        self.left.push(Piece { line: s.line, from: start_break });
+                        self.left.push(HorizonPiece { line: s.line, from: start_break });
                     }
                     run.get_or_insert(start);
                     on_segment = true;
@@ -221,7 +221,7 @@ impl Horizon {
                     let from = Break { u: s.ub, error: plane.du, kind: Kind::Vertex(s.line.b) };
                     match (ends, self.right.last_mut()) {
                         (Ordering::Equal, Some(next)) => next.from = from,
-                        _ => self.right.push(Piece { line: piece.line, from }),
+                        _ => self.right.push(HorizonPiece { line: piece.line, from }),
                     }
                 }
                 break;
@@ -249,7 +249,7 @@ impl Horizon {
     /// nothing and nothing of it is seen. Rounded numbers only; what they leave open is false. The
     /// finger is where `seek` puts it.
     #[inline]
-    fn is_inside<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment) -> bool {
+    fn is_inside<S: Samples>(&mut self, plane: &HorizonPlane<S>, s: &HorizonSegment) -> bool {
         if s.left == End::Border || s.right == End::Border {
             return false;
         }
@@ -275,8 +275,9 @@ impl Horizon {
                 break;
             }
             let at = s.line.at(next.from.u);
-            let sway = |line: &Line| (s.line.slope - line.slope).abs() * 2.0 * next.from.error;
-            let below = |line: &Line| {
+            let sway =
+                |line: &HorizonLine| (s.line.slope - line.slope).abs() * 2.0 * next.from.error;
+            let below = |line: &HorizonLine| {
                 inside(at - line.at(next.from.u), s.line.error + line.error + sway(line))
             };
             if beyond >= -margin || !below(&piece.line) || !below(&next.line) {
@@ -291,7 +292,7 @@ impl Horizon {
     /// Moves the finger so that the next piece on the right holds the segment's left end; returns
     /// whether that piece begins there.
     #[inline]
-    fn seek<S: Samples>(&mut self, plane: &Plane<S>, s: &Segment) -> bool {
+    fn seek<S: Samples>(&mut self, plane: &HorizonPlane<S>, s: &HorizonSegment) -> bool {
         if s.left == End::Border {
             while let Some(piece) = self.left.pop() {
                 self.right.push(piece);
@@ -304,7 +305,7 @@ impl Horizon {
     /// Moves the finger so that the next piece on the right is the last that begins at or before
     /// `p`; returns where it begins compared with `p`.
     #[inline]
-    fn seek_vertex<S: Samples>(&mut self, plane: &Plane<S>, p: Vertex) -> Ordering {
+    fn seek_vertex<S: Samples>(&mut self, plane: &HorizonPlane<S>, p: HorizonVertex) -> Ordering {
         let mut moved_back = false;
         let mut found = Ordering::Less;
         while let Some(piece) = self.right.last() {
@@ -337,7 +338,7 @@ impl Horizon {
     /// eye; the horizon counts as it is just beside that u, on the given side.
     pub(super) fn radial<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
+        plane: &HorizonPlane<S>,
         near: u32,
         far: u32,
         right_side: bool,
@@ -345,14 +346,14 @@ impl Horizon {
         let far_at = plane.vertex(far);
         let begins_here = self.seek_vertex(plane, far_at) == Ordering::Equal;
         let stack = if begins_here && !right_side { &self.left } else { &self.right };
-        let line = stack.last().map_or(Line::EMPTY, |piece| piece.line);
+        let line = stack.last().map_or(HorizonLine::EMPTY, |piece| piece.line);
         if line.is_empty() {
             return Some((0.0, 1.0));
         }
         let [_, near_depth, near_height] = plane.sight.rounded(plane.point(near));
         let [_, far_depth, _] = plane.sight.rounded(plane.point(far));
         let over_near = if near_depth > 0.0 {
-            let near_at = Vertex { id: near, u: far_at.u, v: near_height / near_depth };
+            let near_at = HorizonVertex { id: near, u: far_at.u, v: near_height / near_depth };
             self.point_over(plane, near_at, &line)
         } else {
             Ordering::Less

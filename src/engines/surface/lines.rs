@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::pen_path::{LineStroke, order};
-use super::pieces::{GridPieces, LOWER, PARTLY, Piece, Side, UPPER};
+use super::pieces::{GridPieces, LOWER, PARTLY, SurfaceSide, UPPER, VisiblePiece};
 use crate::camera::{Camera, Frame, Projection};
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
@@ -24,7 +24,7 @@ pub struct Lines {
     pub every: usize,
     /// Only what is seen from this side; lines on the surface's border are seen as their triangle
     /// is.
-    pub side: Option<Side>,
+    pub side: Option<SurfaceSide>,
     /// Two-point strokes, one for each visible piece of each edge, instead of chains.
     pub separate: bool,
 }
@@ -43,14 +43,14 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines)
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let every = lines.every.max(1);
     let chosen = |n: usize| (0..n).filter(move |k| k % every == 0 || k + 1 == n);
-    let mut families: Vec<Vec<Line>> = Vec::new();
+    let mut families: Vec<Vec<GridLine>> = Vec::new();
     if lines.along_x {
-        let line = |j| Line { first: j * nx, step: 1, edge: j * (nx - 1), n: nx };
+        let line = |j| GridLine { first: j * nx, step: 1, edge: j * (nx - 1), n: nx };
         families.push(chosen(ny).map(line).collect());
     }
     if lines.along_y {
         let along_x = ny * (nx - 1);
-        let line = |i| Line { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
+        let line = |i| GridLine { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
         families.push(chosen(nx).map(line).collect());
     }
     let mut drawing = Drawing::default();
@@ -122,7 +122,7 @@ impl Projector {
 }
 
 /// A line of the grid: its samples are `first + k·step`, its edges `edge + k`.
-struct Line {
+struct GridLine {
     first: usize,
     step: usize,
     edge: usize,
@@ -164,10 +164,10 @@ impl Chains {
     }
 }
 
-impl Line {
+impl GridLine {
     /// Which side of the surface is seen at an edge on its border, by its only triangle; `None`
     /// inside.
-    fn border_side(&self, grid: &Grid, k: usize, projector: &Projector) -> Option<Side> {
+    fn border_side(&self, grid: &Grid, k: usize, projector: &Projector) -> Option<SurfaceSide> {
         let (nx, ny) = (grid.xs().len(), grid.ys().len());
         let from = self.first + k * self.step;
         let (i, j) = (from % nx, from / nx);
@@ -186,7 +186,7 @@ impl Line {
         };
         let triangle = corners.map(|sample| grid.point(sample as u32));
         let is_upper = facing(triangle, projector.towards) != Sign::Negative;
-        Some(if is_upper { Side::Upper } else { Side::Lower })
+        Some(if is_upper { SurfaceSide::Upper } else { SurfaceSide::Lower })
     }
 
     fn chains(
@@ -211,7 +211,7 @@ impl Line {
             let mut reached = false;
             let mut last = (reaches && !lines.separate).then_some(0.0);
             let p = std::mem::replace(&mut q, point(k + 1));
-            let mut add = |piece: &Piece| {
+            let mut add = |piece: &VisiblePiece| {
                 if let Some(only) = lines.side
                     && border_side(k).unwrap_or(piece.side) != only
                 {
@@ -232,8 +232,9 @@ impl Line {
             };
             match status {
                 UPPER | LOWER => {
-                    let side = if status == UPPER { Side::Upper } else { Side::Lower };
-                    add(&Piece { edge, t0: 0.0, t1: 1.0, side });
+                    let side =
+                        if status == UPPER { SurfaceSide::Upper } else { SurfaceSide::Lower };
+                    add(&VisiblePiece { edge, t0: 0.0, t1: 1.0, side });
                 }
                 PARTLY => {
                     while let Some(piece) = partial.as_slice().first().filter(|p| p.edge == edge) {

@@ -47,12 +47,12 @@ use std::sync::atomic::AtomicU8;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cells::{First, Part};
+use super::cells::{First, GridPart};
 use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
-use super::plan_predicates::{Sight, over_plane};
-use super::segment::Plane;
-use super::strip::Strip;
-use super::{Order, SurfaceError};
+use super::plan_predicates::{PlanSight, over_plane};
+use super::segment::HorizonPlane;
+use super::strip::HorizonStrip;
+use super::{CellOrder, SurfaceError};
 use crate::camera::{Camera, Projection};
 use crate::surface::{Grid, Holes};
 
@@ -100,7 +100,7 @@ pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
 ///
 /// # Errors
 /// Holes, or an eye on the surface.
-pub fn solve(grid: &Grid, camera: &Camera, order: Order) -> Result<GridPieces, SurfaceError> {
+pub fn solve(grid: &Grid, camera: &Camera, order: CellOrder) -> Result<GridPieces, SurfaceError> {
     solve_in_strips(grid, camera, order, CELLS_PER_STRIP)
 }
 
@@ -112,7 +112,7 @@ pub fn solve(grid: &Grid, camera: &Camera, order: Order) -> Result<GridPieces, S
 pub fn solve_in_strips(
     grid: &Grid,
     camera: &Camera,
-    order: Order,
+    order: CellOrder,
     cells_per_strip: usize,
 ) -> Result<GridPieces, SurfaceError> {
     if grid.holes() != Holes::None {
@@ -134,10 +134,10 @@ pub fn solve_in_strips(
     let centre = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
     let size = (high - centre).abs().max((low - centre).abs());
     let parts = parts(grid, camera);
-    let tasks: Vec<(&Part, Sight, (f64, f64))> = parts
+    let tasks: Vec<(&GridPart, PlanSight, (f64, f64))> = parts
         .iter()
         .flat_map(|part| {
-            let sight = Sight::new(camera, part.sx, part.sy, centre);
+            let sight = PlanSight::new(camera, part.sx, part.sy, centre);
             let n_cells = part.columns.len() * part.rows.len();
             let n_strips = n_cells / cells_per_strip.max(1);
             let ranges = strips(places(grid, part, &sight), n_strips, &sight, size);
@@ -148,8 +148,8 @@ pub fn solve_in_strips(
         .par_iter()
         .with_max_len(1)
         .map(|&(part, sight, range)| {
-            let plane = Plane::new(grid, sight, size);
-            let mut strip = Strip::new(plane, range, horizons, &status);
+            let plane = HorizonPlane::new(grid, sight, size);
+            let mut strip = HorizonStrip::new(plane, range, horizons, &status);
             part.sweep(grid, &mut strip, order);
             (strip.work(), strip.found)
         })
@@ -190,7 +190,7 @@ fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), SurfaceErro
 }
 
 /// The parts of the domain around the eye; in orthographic projection there is one.
-pub(super) fn parts(grid: &Grid, camera: &Camera) -> Vec<Part> {
+pub(super) fn parts(grid: &Grid, camera: &Camera) -> Vec<GridPart> {
     let Projection::Perspective { .. } = camera.projection() else {
         let forward = camera.forward();
         let sign = |f: f64| if f < 0.0 { -1.0 } else { 1.0 };
@@ -198,7 +198,7 @@ pub(super) fn parts(grid: &Grid, camera: &Camera) -> Vec<Part> {
         let away = |n: usize, s: f64| -> Vec<u32> {
             if s < 0.0 { (0..n as u32).rev().collect() } else { (0..n as u32).collect() }
         };
-        return vec![Part {
+        return vec![GridPart {
             columns: away(grid.xs().len(), sx),
             rows: away(grid.ys().len(), sy),
             sx,
@@ -213,7 +213,7 @@ pub(super) fn parts(grid: &Grid, camera: &Camera) -> Vec<Part> {
     let mut parts = Vec::new();
     for (sx, columns) in sides(grid.xs(), eye.x) {
         for (sy, rows) in sides(grid.ys(), eye.y) {
-            parts.push(Part {
+            parts.push(GridPart {
                 columns: columns.0.clone(),
                 rows: rows.0.clone(),
                 sx,
@@ -255,7 +255,7 @@ fn sides(values: &[f64], eye: f64) -> Vec<(f64, (Vec<u32>, First))> {
 }
 
 /// Places along u of a part's samples, some of many.
-fn places(grid: &Grid, part: &Part, sight: &Sight) -> Vec<f64> {
+fn places(grid: &Grid, part: &GridPart, sight: &PlanSight) -> Vec<f64> {
     let every = |n: usize| (n / 64).max(1);
     let mut us: Vec<f64> = Vec::new();
     for &row in part.rows.iter().skip(1).step_by(every(part.rows.len())) {
@@ -271,7 +271,7 @@ fn places(grid: &Grid, part: &Part, sight: &Sight) -> Vec<f64> {
 pub(super) fn strips(
     mut places: Vec<f64>,
     n_strips: usize,
-    sight: &Sight,
+    sight: &PlanSight,
     size: DVec3,
 ) -> Vec<(f64, f64)> {
     let (low, high) = match sight.forward {

@@ -21,15 +21,15 @@ mod steps;
 mod strip;
 pub mod tin;
 
-pub use horizon::Work;
+pub use horizon::HorizonCounts;
 pub use lines::{Lines, strokes};
-pub use pieces::{GridPieces, Piece, Side};
+pub use pieces::{GridPieces, SurfaceSide, VisiblePiece};
 
 use thiserror::Error;
 
 /// In which order cells are visited; both give the same drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Order {
+pub enum CellOrder {
     /// Row after row, away from the eye.
     #[default]
     Rows,

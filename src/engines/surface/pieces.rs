@@ -2,11 +2,11 @@
 
 use std::sync::atomic::AtomicU8;
 
-use super::Work;
+use super::HorizonCounts;
 
 /// Which side of the surface is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Side {
+pub enum SurfaceSide {
     /// Beyond the upper horizon: from above.
     Upper,
     /// Beyond the lower horizon: from below.
@@ -15,7 +15,7 @@ pub enum Side {
 
 /// A visible part of an edge between two neighboring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct VisiblePiece {
     /// The edge, see [`GridPieces`].
     pub edge: u32,
     /// Where it begins: 0 at the end with the smaller index, 1 at the other.
@@ -23,7 +23,7 @@ pub struct Piece {
     /// Where it ends, greater than `t0`.
     pub t1: f64,
     /// Which side is seen.
-    pub side: Side,
+    pub side: SurfaceSide,
 }
 
 pub(super) const HIDDEN: u8 = 0;
@@ -41,8 +41,8 @@ pub struct GridPieces {
     pub(super) ny: usize,
     pub(super) status: Vec<u8>,
     /// Of partly visible edges only, by edge and then from t = 0 to 1; disjoint.
-    pub(super) pieces: Vec<Piece>,
-    pub(super) work: Work,
+    pub(super) pieces: Vec<VisiblePiece>,
+    pub(super) work: HorizonCounts,
 }
 
 impl GridPieces {
@@ -57,7 +57,7 @@ impl GridPieces {
     }
 
     /// How much work it took.
-    pub fn work(&self) -> Work {
+    pub fn work(&self) -> HorizonCounts {
         self.work
     }
 
@@ -75,14 +75,18 @@ impl GridPieces {
     }
 
     /// All visible pieces in order of edge and t.
-    pub fn iter(&self) -> impl Iterator<Item = Piece> {
+    pub fn iter(&self) -> impl Iterator<Item = VisiblePiece> {
         let mut partial = self.pieces.iter().peekable();
         self.status.iter().enumerate().flat_map(move |(edge, status)| {
             let edge = edge as u32;
             let mut found = Vec::new();
             match *status {
-                UPPER => found.push(Piece { edge, t0: 0.0, t1: 1.0, side: Side::Upper }),
-                LOWER => found.push(Piece { edge, t0: 0.0, t1: 1.0, side: Side::Lower }),
+                UPPER => {
+                    found.push(VisiblePiece { edge, t0: 0.0, t1: 1.0, side: SurfaceSide::Upper })
+                }
+                LOWER => {
+                    found.push(VisiblePiece { edge, t0: 0.0, t1: 1.0, side: SurfaceSide::Lower })
+                }
                 PARTLY => {
                     while let Some(piece) = partial.next_if(|piece| piece.edge == edge) {
                         found.push(*piece);
@@ -99,9 +103,9 @@ impl GridPieces {
         nx: usize,
         ny: usize,
         status: Vec<AtomicU8>,
-        done: Vec<(Work, Vec<Piece>)>,
+        done: Vec<(HorizonCounts, Vec<VisiblePiece>)>,
     ) -> Self {
-        let mut work = Work::default();
+        let mut work = HorizonCounts::default();
         let mut found = Vec::with_capacity(done.iter().map(|(_, found)| found.len()).sum());
         for (strip_work, strip_found) in done {
             work += strip_work;
@@ -112,14 +116,19 @@ impl GridPieces {
     }
 
     /// Sorts and joins what strips have found.
-    pub(super) fn join(nx: usize, ny: usize, mut status: Vec<u8>, mut found: Vec<Piece>) -> Self {
+    pub(super) fn join(
+        nx: usize,
+        ny: usize,
+        mut status: Vec<u8>,
+        mut found: Vec<VisiblePiece>,
+    ) -> Self {
         found.sort_unstable_by(|a, b| {
             (a.edge.cmp(&b.edge))
                 .then(a.t0.total_cmp(&b.t0))
                 .then(a.side.cmp(&b.side))
                 .then(a.t1.total_cmp(&b.t1))
         });
-        let mut pieces: Vec<Piece> = Vec::with_capacity(found.len());
+        let mut pieces: Vec<VisiblePiece> = Vec::with_capacity(found.len());
         let mut first = 0;
         for edge_pieces in found.chunk_by(|a, b| a.edge == b.edge) {
             let edge = edge_pieces[0].edge as usize;
@@ -134,7 +143,7 @@ impl GridPieces {
                     Some(last) if piece.t0 < last.t1 => {
                         if piece.t1 > last.t1 {
                             let t0 = last.t1;
-                            pieces.push(Piece { t0, ..piece });
+                            pieces.push(VisiblePiece { t0, ..piece });
                         }
                     }
                     _ => pieces.push(piece),
@@ -142,13 +151,13 @@ impl GridPieces {
             }
             match pieces[first..] {
                 [only] if only.t0 == 0.0 && only.t1 == 1.0 => {
-                    status[edge] = if only.side == Side::Upper { UPPER } else { LOWER };
+                    status[edge] = if only.side == SurfaceSide::Upper { UPPER } else { LOWER };
                     pieces.truncate(first);
                 }
                 _ => status[edge] = PARTLY,
             }
             first = pieces.len();
         }
-        Self { nx, ny, status, pieces, work: Work::default() }
+        Self { nx, ny, status, pieces, work: HorizonCounts::default() }
     }
 }

@@ -19,7 +19,7 @@ use crate::camera::{Camera, Projection};
 
 /// How points are seen from one part of the domain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sight {
+pub(super) struct PlanSight {
     /// The eye, or in orthographic projection any fixed point near the surface.
     pub(super) centre: DVec3,
     /// Signs that turn the part towards +x and +y.
@@ -32,14 +32,14 @@ pub(super) struct Sight {
 
 /// A place along u at which two lines are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Place {
+pub(super) enum PlaceOnU {
     /// The u of a sample.
     Vertex(DVec3),
     /// A given u.
     Border(f64),
 }
 
-impl Sight {
+impl PlanSight {
     /// The sight of the part in which `sx·(x − centre.x)` and `sy·(y − centre.y)` are positive, or
     /// in orthographic projection of the whole domain.
     pub(super) fn new(camera: &Camera, sx: f64, sy: f64, centre: DVec3) -> Self {
@@ -134,7 +134,7 @@ impl Sight {
 
     /// Where the u of `p` lies compared with `u`.
     pub(super) fn order_to_border(&self, p: DVec3, u: f64) -> Ordering {
-        let scaled = self.scaled(&[p], &[Place::Border(u)]);
+        let scaled = self.scaled(&[p], &[PlaceOnU::Border(u)]);
         let (p, b) = (&scaled.0[0], &scaled.1[0]);
         sign(&(&p[0] * &b[1] - &b[0] * &p[1]))
     }
@@ -163,7 +163,7 @@ impl Sight {
         &self,
         first: [DVec3; 2],
         second: [DVec3; 2],
-        at: Place,
+        at: PlaceOnU,
     ) -> Ordering {
         let points = [first[0], first[1], second[0], second[1]];
         let scaled = self.scaled(&points, &[at]);
@@ -204,7 +204,7 @@ impl Sight {
 
     /// How far along the way from `p` to `q`, as a part of it, a place is passed; correct to the last
     /// place or so.
-    pub(super) fn way_to_place(&self, [p, q]: [DVec3; 2], place: Place) -> f64 {
+    pub(super) fn way_to_place(&self, [p, q]: [DVec3; 2], place: PlaceOnU) -> f64 {
         let scaled = self.scaled(&[p, q], &[place]);
         let ([p, q], [w]) = (&scaled.0[..], &scaled.1[..]) else {
             return 0.0;
@@ -240,10 +240,10 @@ impl Sight {
 
     /// Exact triples of points and places in one scale, and the power of two of the unit of u in
     /// orthographic projection.
-    fn scaled(&self, points: &[DVec3], places: &[Place]) -> (Vec<Triple>, Vec<Triple>, i64) {
+    fn scaled(&self, points: &[DVec3], places: &[PlaceOnU]) -> (Vec<Triple>, Vec<Triple>, i64) {
         let vertices = places.iter().filter_map(|place| match place {
-            Place::Vertex(p) => Some(*p),
-            Place::Border(_) => None,
+            PlaceOnU::Vertex(p) => Some(*p),
+            PlaceOnU::Border(_) => None,
         });
         let all = points.iter().copied().chain(vertices).chain([self.centre]);
         let unit = all.flat_map(|p| p.to_array()).filter_map(exponent).min().unwrap_or(0);
@@ -254,8 +254,8 @@ impl Sight {
         let places = places
             .iter()
             .map(|place| match *place {
-                Place::Vertex(p) => self.triple(p, unit, f_unit),
-                Place::Border(u) => {
+                PlaceOnU::Vertex(p) => self.triple(p, unit, f_unit),
+                PlaceOnU::Border(u) => {
                     let (mantissa, power) = parts(u);
                     let unit_of_u = if self.forward.is_some() { unit + f_unit } else { 0 };
                     let shift = power - unit_of_u;

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::plan_predicates::Sight;
+use super::plan_predicates::PlanSight;
 
 /// Stands for no sample.
 pub(super) const NONE: u32 = u32::MAX;
@@ -28,7 +28,7 @@ pub(super) trait Samples: Sync {
 
 /// A sample in the plane of horizons, rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Vertex {
+pub(super) struct HorizonVertex {
     pub(super) id: u32,
     pub(super) u: f64,
     pub(super) v: f64,
@@ -37,16 +37,16 @@ pub(super) struct Vertex {
 /// The corners of a cell of a grid and how it is cut in two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {
-    pub(super) near: Vertex,
-    pub(super) right: Vertex,
-    pub(super) left: Vertex,
-    pub(super) far: Vertex,
+    pub(super) near: HorizonVertex,
+    pub(super) right: HorizonVertex,
+    pub(super) left: HorizonVertex,
+    pub(super) far: HorizonVertex,
     pub(super) diagonal: Diagonal,
 }
 
 impl Cell {
     /// The corners that the diagonal joins.
-    pub(super) fn diagonal(&self) -> (Vertex, Vertex) {
+    pub(super) fn diagonal(&self) -> (HorizonVertex, HorizonVertex) {
         match self.diagonal {
             Diagonal::NearToFar => (self.near, self.far),
             Diagonal::LeftToRight => (self.left, self.right),
@@ -62,9 +62,9 @@ pub(super) enum Diagonal {
 }
 
 /// The samples, how they are seen, and how far rounded u and v may be from the truth.
-pub(super) struct Plane<'a, S: Samples> {
+pub(super) struct HorizonPlane<'a, S: Samples> {
     pub(super) samples: &'a S,
-    pub(super) sight: Sight,
+    pub(super) sight: PlanSight,
     /// Bound on the error of u.
     pub(super) du: f64,
     /// Bound on the error of v: `dv_relative · |v| + dv`.
@@ -73,9 +73,9 @@ pub(super) struct Plane<'a, S: Samples> {
     pub(super) dv: f64,
 }
 
-impl<'a, S: Samples> Plane<'a, S> {
+impl<'a, S: Samples> HorizonPlane<'a, S> {
     /// `size` bounds |x|, |y| and |z| of all samples less the sight's centre.
-    pub(super) fn new(samples: &'a S, sight: Sight, size: DVec3) -> Self {
+    pub(super) fn new(samples: &'a S, sight: PlanSight, size: DVec3) -> Self {
         match sight.forward {
             // dx, dy, dz are off by one rounding each, their sum and difference by two relative to
             // the sum, which is not less than the difference; the quotients add one.
@@ -107,9 +107,9 @@ impl<'a, S: Samples> Plane<'a, S> {
         self.du / UNIT
     }
 
-    pub(super) fn vertex(&self, id: u32) -> Vertex {
+    pub(super) fn vertex(&self, id: u32) -> HorizonVertex {
         let [hu, hw, hv] = self.sight.rounded(self.samples.point(id));
-        Vertex { id, u: hu / hw, v: hv / hw }
+        HorizonVertex { id, u: hu / hw, v: hv / hw }
     }
 
     pub(super) fn point(&self, id: u32) -> DVec3 {
@@ -121,7 +121,7 @@ impl<'a, S: Samples> Plane<'a, S> {
     }
 
     /// Where `a` lies along u compared with `b`.
-    pub(super) fn order(&self, a: Vertex, b: Vertex) -> Ordering {
+    pub(super) fn order(&self, a: HorizonVertex, b: HorizonVertex) -> Ordering {
         if a.id == b.id {
             return Ordering::Equal;
         }
@@ -130,7 +130,7 @@ impl<'a, S: Samples> Plane<'a, S> {
     }
 
     /// Where `a` lies compared with a border.
-    pub(super) fn order_to_border(&self, a: Vertex, u: f64) -> Ordering {
+    pub(super) fn order_to_border(&self, a: HorizonVertex, u: f64) -> Ordering {
         filtered(a.u - u, self.du)
             .unwrap_or_else(|| self.sight.order_to_border(self.point(a.id), u))
     }
@@ -150,7 +150,7 @@ pub(super) fn filtered(value: f64, error: f64) -> Option<Ordering> {
 
 /// A straight line in the plane of horizons, through two samples from left to right.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Line {
+pub(super) struct HorizonLine {
     pub(super) a: u32,
     pub(super) b: u32,
     pub(super) ua: f64,
@@ -161,7 +161,7 @@ pub(super) struct Line {
     pub(super) error: f64,
 }
 
-impl Line {
+impl HorizonLine {
     pub(super) const EMPTY: Self =
         Self { a: NONE, b: NONE, ua: 0.0, va: 0.0, vb: 0.0, slope: 0.0, error: 0.0 };
 
@@ -185,14 +185,14 @@ pub(super) enum End {
 
 /// A segment of the surface to be tested against a horizon and added to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Segment {
-    pub(super) line: Line,
+pub(super) struct HorizonSegment {
+    pub(super) line: HorizonLine,
     pub(super) ub: f64,
     pub(super) left: End,
     pub(super) right: End,
 }
 
-impl Segment {
+impl HorizonSegment {
     /// The samples that it joins.
     pub(super) fn ids(&self) -> (u32, u32) {
         (self.line.a, self.line.b)
@@ -202,14 +202,21 @@ impl Segment {
     /// part of the sight.
     #[inline]
     pub(super) fn new<S: Samples>(
-        plane: &Plane<S>,
-        (a, left): (Vertex, End),
-        (b, right): (Vertex, End),
+        plane: &HorizonPlane<S>,
+        (a, left): (HorizonVertex, End),
+        (b, right): (HorizonVertex, End),
     ) -> Self {
         let width = b.u - a.u;
         let v_error = plane.v_error(a.v) + plane.v_error(b.v);
-        let line =
-            Line { a: a.id, b: b.id, ua: a.u, va: a.v, vb: b.v, slope: 0.0, error: f64::INFINITY };
+        let line = HorizonLine {
+            a: a.id,
+            b: b.id,
+            ua: a.u,
+            va: a.v,
+            vb: b.v,
+            slope: 0.0,
+            error: f64::INFINITY,
+        };
         let mut segment = Self { line, ub: b.u, left, right };
         segment.set_slope(width, v_error, plane.du);
         segment
@@ -231,7 +238,7 @@ impl Segment {
     /// A segment of which an end may lie outside the part that `dx, dy ≥ 0` bounds; there it ends at
     /// the part's border, u = −1 or 1. `a` is to the left of `b` as seen from the eye.
     pub(super) fn clipped<S: Samples>(
-        plane: &Plane<S>,
+        plane: &HorizonPlane<S>,
         (a, left): (u32, End),
         (b, right): (u32, End),
     ) -> Self {
@@ -245,7 +252,7 @@ impl Segment {
         let end = |id: u32, d: DVec3, other: DVec3, u: f64, out: bool| {
             if !out {
                 return (
-                    Vertex { id, u: (d.x - d.y) / (d.x + d.y), v: d.z / (d.x + d.y) },
+                    HorizonVertex { id, u: (d.x - d.y) / (d.x + d.y), v: d.z / (d.x + d.y) },
                     plane.v_error(d.z / (d.x + d.y)),
                 );
             }
@@ -258,12 +265,19 @@ impl Segment {
             let depth_error = 8.0 * UNIT * size.x.max(size.y);
             let error = (8.0 * UNIT * size.z + v.abs() * depth_error) / (depth - depth_error);
             let error = if depth > 2.0 * depth_error { error } else { f64::INFINITY };
-            (Vertex { id, u, v }, error)
+            (HorizonVertex { id, u, v }, error)
         };
         let (a_at, a_error) = end(a, da, db, -1.0, left == End::Border);
         let (b_at, b_error) = end(b, db, da, 1.0, right == End::Border);
-        let line =
-            Line { a, b, ua: a_at.u, va: a_at.v, vb: b_at.v, slope: 0.0, error: f64::INFINITY };
+        let line = HorizonLine {
+            a,
+            b,
+            ua: a_at.u,
+            va: a_at.v,
+            vb: b_at.v,
+            slope: 0.0,
+            error: f64::INFINITY,
+        };
         let mut segment = Self { line, ub: b_at.u, left, right };
         if a_error + b_error < f64::INFINITY {
             segment.set_slope(b_at.u - a_at.u, a_error + b_error, plane.du);
@@ -271,11 +285,11 @@ impl Segment {
         segment
     }
 
-    pub(super) fn a(&self) -> Vertex {
-        Vertex { id: self.line.a, u: self.line.ua, v: self.line.va }
+    pub(super) fn a(&self) -> HorizonVertex {
+        HorizonVertex { id: self.line.a, u: self.line.ua, v: self.line.va }
     }
 
-    pub(super) fn b(&self) -> Vertex {
-        Vertex { id: self.line.b, u: self.ub, v: self.line.vb }
+    pub(super) fn b(&self) -> HorizonVertex {
+        HorizonVertex { id: self.line.b, u: self.ub, v: self.line.vb }
     }
 }

@@ -5,15 +5,17 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
 use glam::DVec3;
 
-use super::Work;
+use super::HorizonCounts;
 use super::horizon::{Break, Horizon, Kind, Stop};
-use super::pieces::{HIDDEN, LOWER, Piece, Side, UPPER};
-use super::plan_predicates::Place;
-use super::segment::{Cell, End, PLACE_PRECISION, Plane, Samples, Segment, Vertex};
+use super::pieces::{HIDDEN, LOWER, SurfaceSide, UPPER, VisiblePiece};
+use super::plan_predicates::PlaceOnU;
+use super::segment::{
+    Cell, End, HorizonPlane, HorizonSegment, HorizonVertex, PLACE_PRECISION, Samples,
+};
 
 /// A strip of one part of the domain, from one u to another. Strips never hide each other.
-pub(super) struct Strip<'a, S: Samples> {
-    pub(super) plane: Plane<'a, S>,
+pub(super) struct HorizonStrip<'a, S: Samples> {
+    pub(super) plane: HorizonPlane<'a, S>,
     pub(super) from: f64,
     pub(super) to: f64,
     /// Absent when the eye stands below the surface within the domain: all is below it.
@@ -28,12 +30,12 @@ pub(super) struct Strip<'a, S: Samples> {
     n_visited: usize,
     /// Edges wholly visible; each is written by the one strip that holds it.
     status: &'a [AtomicU8],
-    pub(super) found: Vec<Piece>,
+    pub(super) found: Vec<VisiblePiece>,
 }
 
-impl<'a, S: Samples> Strip<'a, S> {
+impl<'a, S: Samples> HorizonStrip<'a, S> {
     pub(super) fn new(
-        plane: Plane<'a, S>,
+        plane: HorizonPlane<'a, S>,
         (from, to): (f64, f64),
         (upper, lower): (bool, bool),
         status: &'a [AtomicU8],
@@ -54,8 +56,8 @@ impl<'a, S: Samples> Strip<'a, S> {
         }
     }
 
-    pub(super) fn work(&self) -> Work {
-        let mut work = Work::default();
+    pub(super) fn work(&self) -> HorizonCounts {
+        let mut work = HorizonCounts::default();
         for horizon in [&self.upper, &self.lower].into_iter().flatten() {
             work += horizon.work;
         }
@@ -65,7 +67,7 @@ impl<'a, S: Samples> Strip<'a, S> {
     /// The segment between two samples of the part, `a` to the left of `b`, as far as it lies in the
     /// strip.
     #[inline]
-    pub(super) fn segment(&self, a: Vertex, b: Vertex) -> Option<Segment> {
+    pub(super) fn segment(&self, a: HorizonVertex, b: HorizonVertex) -> Option<HorizonSegment> {
         let margin = 4.0 * self.plane.du;
         let (mut left, mut right) = (End::Vertex, End::Vertex);
         if !(a.u > self.from + margin && b.u < self.to - margin) {
@@ -81,11 +83,11 @@ impl<'a, S: Samples> Strip<'a, S> {
                 right = End::Border;
             }
         }
-        Some(Segment::new(&self.plane, (a, left), (b, right)))
+        Some(HorizonSegment::new(&self.plane, (a, left), (b, right)))
     }
 
     /// The segment between two samples that may lie outside the part, or be radial.
-    pub(super) fn clipped(&self, a: u32, b: u32) -> Option<Segment> {
+    pub(super) fn clipped(&self, a: u32, b: u32) -> Option<HorizonSegment> {
         let sight = &self.plane.sight;
         let point = |id: u32| self.plane.samples.point(id);
         let (a, b) = match sight.order(point(a), point(b)) {
@@ -108,7 +110,7 @@ impl<'a, S: Samples> Strip<'a, S> {
             return None;
         }
         let end = |out: bool| if out { End::Border } else { End::Vertex };
-        let mut segment = Segment::clipped(&self.plane, (a, end(a_out)), (b, end(b_out)));
+        let mut segment = HorizonSegment::clipped(&self.plane, (a, end(a_out)), (b, end(b_out)));
         let order = |id: u32, u: f64| self.plane.order_to_border(self.plane.vertex(id), u);
         if (!b_out && order(b, self.from) != Ordering::Greater)
             || (!a_out && order(a, self.to) != Ordering::Less)
@@ -124,7 +126,7 @@ impl<'a, S: Samples> Strip<'a, S> {
     /// segments, which are compared with those horizons only that it is not surely within. `range`
     /// is that of its corners' u.
     #[inline]
-    pub(super) fn visit(&mut self, corners: [Vertex; 3], range: (f64, f64)) -> bool {
+    pub(super) fn visit(&mut self, corners: [HorizonVertex; 3], range: (f64, f64)) -> bool {
         self.keep_steps();
         for (horizon, is_settled) in
             [&mut self.upper, &mut self.lower].into_iter().zip(&mut self.is_settled)
@@ -185,7 +187,7 @@ impl<'a, S: Samples> Strip<'a, S> {
 
     /// Lets a segment hide what comes later.
     #[inline]
-    pub(super) fn hide(&mut self, segment: &Segment) {
+    pub(super) fn hide(&mut self, segment: &HorizonSegment) {
         for (horizon, is_settled) in
             [&mut self.upper, &mut self.lower].into_iter().zip(self.is_settled)
         {
@@ -197,10 +199,11 @@ impl<'a, S: Samples> Strip<'a, S> {
 
     /// Records what is visible of a segment, which is an edge of the drawing, and lets it hide.
     #[inline]
-    pub(super) fn draw(&mut self, segment: &Segment, edge: u32) {
+    pub(super) fn draw(&mut self, segment: &HorizonSegment, edge: u32) {
         let Self { plane, status, found, from, to, is_settled, .. } = self;
         let mut wholly = self.is_seen;
-        let horizons = [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)];
+        let horizons =
+            [(&mut self.upper, SurfaceSide::Upper), (&mut self.lower, SurfaceSide::Lower)];
         for ((horizon, side), &is_settled) in horizons.into_iter().zip(&*is_settled) {
             let Some(horizon) = horizon.as_mut().filter(|_| !is_settled) else { continue };
             let seen_before = wholly;
@@ -210,7 +213,7 @@ impl<'a, S: Samples> Strip<'a, S> {
                 }
                 if (begin, end) == (Stop::Left, Stop::Right) {
                     wholly = true;
-                    let seen = if side == Side::Upper { UPPER } else { LOWER };
+                    let seen = if side == SurfaceSide::Upper { UPPER } else { LOWER };
                     status[edge as usize].store(seen, Relaxed);
                     return;
                 }
@@ -218,7 +221,7 @@ impl<'a, S: Samples> Strip<'a, S> {
                 let (a, b) = (t(begin), t(end));
                 let (t0, t1) = (a.min(b), a.max(b));
                 if t0 < t1 {
-                    found.push(Piece { edge, t0, t1, side });
+                    found.push(VisiblePiece { edge, t0, t1, side });
                 }
             });
         }
@@ -226,8 +229,8 @@ impl<'a, S: Samples> Strip<'a, S> {
 
     /// Records an edge as visible from end to end.
     pub(super) fn draw_whole(&mut self, edge: u32) {
-        let side = if self.upper.is_some() { Side::Upper } else { Side::Lower };
-        self.found.push(Piece { edge, t0: 0.0, t1: 1.0, side });
+        let side = if self.upper.is_some() { SurfaceSide::Upper } else { SurfaceSide::Lower };
+        self.found.push(VisiblePiece { edge, t0: 0.0, t1: 1.0, side });
     }
 
     /// As [`draw`](Self::draw), for an edge whose ends may lie outside the part.
@@ -257,7 +260,9 @@ impl<'a, S: Samples> Strip<'a, S> {
         if !inside {
             return;
         }
-        for (horizon, side) in [(&mut self.upper, Side::Upper), (&mut self.lower, Side::Lower)] {
+        for (horizon, side) in
+            [(&mut self.upper, SurfaceSide::Upper), (&mut self.lower, SurfaceSide::Lower)]
+        {
             let Some(horizon) = horizon else { continue };
             let Some((from, to)) = horizon.radial(&self.plane, near, far, right_side) else {
                 continue;
@@ -265,14 +270,14 @@ impl<'a, S: Samples> Strip<'a, S> {
             let from = t_foot.map_or(from, |t| from.max(t));
             if (from, to) == (0.0, 1.0) {
                 // The cells on both sides may be in different strips, so the order must not matter.
-                let seen = if side == Side::Upper { UPPER } else { LOWER };
+                let seen = if side == SurfaceSide::Upper { UPPER } else { LOWER };
                 let merge = |old| Some(if old == HIDDEN { seen } else { seen.min(old) });
                 let _ = self.status[edge as usize].fetch_update(Relaxed, Relaxed, merge);
                 continue;
             }
             let (t0, t1) = if near < far { (from, to) } else { (1.0 - to, 1.0 - from) };
             if t0 < t1 {
-                self.found.push(Piece { edge, t0, t1, side });
+                self.found.push(VisiblePiece { edge, t0, t1, side });
             }
         }
     }
@@ -280,8 +285,8 @@ impl<'a, S: Samples> Strip<'a, S> {
 
 /// Where a stop lies on the edge, from 0 at the sample with the smaller number to 1.
 fn place<S: Samples>(
-    plane: &Plane<S>,
-    segment: &Segment,
+    plane: &HorizonPlane<S>,
+    segment: &HorizonSegment,
     stop: Stop,
     (from, to): (f64, f64),
 ) -> f64 {
@@ -316,17 +321,17 @@ fn place<S: Samples>(
 
 /// The same for a break, from the very samples.
 fn exact_place<S: Samples>(
-    plane: &Plane<S>,
+    plane: &HorizonPlane<S>,
     ends: [DVec3; 2],
-    segment: &Segment,
+    segment: &HorizonSegment,
     at: Break,
 ) -> f64 {
     let points = |ids: [u32; 2]| ids.map(|id| plane.point(id));
     let own = [segment.line.a, segment.line.b];
     let sight = &plane.sight;
     match at.kind {
-        Kind::Border => sight.way_to_place(ends, Place::Border(at.u)),
-        Kind::Vertex(id) => sight.way_to_place(ends, Place::Vertex(plane.point(id))),
+        Kind::Border => sight.way_to_place(ends, PlaceOnU::Border(at.u)),
+        Kind::Vertex(id) => sight.way_to_place(ends, PlaceOnU::Vertex(plane.point(id))),
         Kind::Crossing(line, other) if other == own => sight.way_to_line(ends, points(line)),
         Kind::Crossing(line, other) if line == own => sight.way_to_line(ends, points(other)),
         Kind::Crossing(line, other) => sight.way_to_crossing(ends, points(line), points(other)),

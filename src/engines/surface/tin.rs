@@ -22,12 +22,12 @@ use std::sync::atomic::AtomicU8;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Work;
+use super::HorizonCounts;
 use super::max_min::strips;
 use super::pieces::{GridPieces, HIDDEN, LOWER, PARTLY, UPPER};
-use super::plan_predicates::{Sight, over_plane};
-use super::segment::{Plane, Samples, Vertex};
-use super::strip::Strip;
+use super::plan_predicates::{PlanSight, over_plane};
+use super::segment::{HorizonPlane, HorizonVertex, Samples};
+use super::strip::HorizonStrip;
 use crate::camera::{Camera, Projection};
 use crate::classify::ViewedScene;
 use crate::engines::visibility::{Span, Visibility};
@@ -41,7 +41,7 @@ const TRIANGLES_PER_STRIP: usize = 60_000;
 ///
 /// `None` when the scene is no function over a convex domain, when triangles hide each other in
 /// turn, when the eye is on the surface, or when the near plane cuts a triangle.
-pub fn solve(view: &ViewedScene) -> Option<(Visibility, Work)> {
+pub fn solve(view: &ViewedScene) -> Option<(Visibility, HorizonCounts)> {
     solve_in_strips(view, TRIANGLES_PER_STRIP)
 }
 
@@ -50,7 +50,7 @@ pub fn solve(view: &ViewedScene) -> Option<(Visibility, Work)> {
 pub fn solve_in_strips(
     view: &ViewedScene,
     triangles_per_strip: usize,
-) -> Option<(Visibility, Work)> {
+) -> Option<(Visibility, HorizonCounts)> {
     let scene = view.scene();
     if !is_function_over_convex_domain(scene) || !is_clear_of_near_plane(view) {
         return None;
@@ -178,7 +178,7 @@ impl<'a> Tin<'a> {
         let size = (high - centre).abs().max((low - centre).abs());
         let positions = scene.mesh().positions();
         let (sx, sy) = signs(camera);
-        let sight = Sight::new(camera, sx, sy, centre);
+        let sight = PlanSight::new(camera, sx, sy, centre);
         let eye = camera.eye().truncate();
         let facing = |a: u32, b: u32| {
             let [a, b] = [a, b].map(|v| positions[v as usize]);
@@ -272,10 +272,10 @@ fn signs(camera: &Camera) -> (f64, f64) {
 }
 
 /// A part of the domain with its vertices in the plane of horizons.
-struct Part {
-    sight: Sight,
+struct TinPart {
+    sight: PlanSight,
     /// By number; only those within the part are right.
-    vertices: Vec<Vertex>,
+    vertices: Vec<HorizonVertex>,
 }
 
 fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
@@ -288,13 +288,13 @@ fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
         vec![signs(&tin.camera)]
     };
     let mut pieces = Vec::new();
-    let mut work = Work::default();
+    let mut work = HorizonCounts::default();
     for (sx, sy) in reflections {
-        let sight = Sight::new(&tin.camera, sx, sy, tin.centre);
-        let plane = Plane::new(tin, sight, tin.size);
+        let sight = PlanSight::new(&tin.camera, sx, sy, tin.centre);
+        let plane = HorizonPlane::new(tin, sight, tin.size);
         let n_vertices = tin.scene.mesh().positions().len() as u32;
         let vertices = (0..n_vertices).into_par_iter().map(|v| plane.vertex(v)).collect();
-        let part = Part { sight, vertices };
+        let part = TinPart { sight, vertices };
         let ranges: Vec<Option<(f64, f64)>> =
             tin.order.par_iter().map(|&triangle| part.range(tin, triangle)).collect();
         let middles = ranges.iter().flatten().map(|(from, to)| from + (to - from) / 2.0);
@@ -306,8 +306,8 @@ fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
             .par_iter()
             .with_max_len(1)
             .map(|&(from, to)| {
-                let plane = Plane::new(tin, sight, tin.size);
-                let mut strip = Strip::new(plane, (from, to), horizons, &status);
+                let plane = HorizonPlane::new(tin, sight, tin.size);
+                let mut strip = HorizonStrip::new(plane, (from, to), horizons, &status);
                 for (&triangle, range) in tin.order.iter().zip(&ranges) {
                     if range.is_some_and(|range| range.0 <= to + margin && range.1 >= from - margin)
                     {
@@ -328,10 +328,10 @@ fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
     Some(pieces)
 }
 
-impl Part {
+impl TinPart {
     /// Whether a point lies beyond the part's borders x and y.
     fn is_outside(&self, p: DVec3) -> (bool, bool) {
-        let Sight { centre, sx, sy, forward } = self.sight;
+        let PlanSight { centre, sx, sy, forward } = self.sight;
         if forward.is_some() {
             return (false, false);
         }
@@ -362,7 +362,7 @@ impl Part {
     }
 
     /// Tests what a triangle adds and lets it hide.
-    fn visit(&self, tin: &Tin, triangle: u32, strip: &mut Strip<Tin>) {
+    fn visit(&self, tin: &Tin, triangle: u32, strip: &mut HorizonStrip<Tin>) {
         let corners @ [a, b, c] = tin.scene.triangles()[triangle as usize];
         let sides = tin.sides[triangle as usize];
         let ends = [(a, b), (b, c), (c, a)];
@@ -394,7 +394,7 @@ impl Part {
         strip.leave();
     }
 
-    fn draw(&self, tin: &Tin, (a, b): (u32, u32), edge: u32, strip: &mut Strip<Tin>) {
+    fn draw(&self, tin: &Tin, (a, b): (u32, u32), edge: u32, strip: &mut HorizonStrip<Tin>) {
         let is_inside = [a, b].iter().all(|&v| self.is_outside(tin.point(v)) == (false, false));
         if !is_inside {
             strip.draw_clipped(a, b, edge);
@@ -413,12 +413,19 @@ impl Part {
 
     /// Tests an edge in the vertical plane of the eye, beside the triangle with the given apex. On
     /// the border of the domain nothing is beside it on the outer side, so it is wholly visible.
-    fn radial(&self, tin: &Tin, (a, b): (u32, u32), edge: u32, apex: u32, strip: &mut Strip<Tin>) {
+    fn radial(
+        &self,
+        tin: &Tin,
+        (a, b): (u32, u32),
+        edge: u32,
+        apex: u32,
+        strip: &mut HorizonStrip<Tin>,
+    ) {
         if tin.is_border(edge) {
             strip.draw_whole(edge);
             return;
         }
-        let Sight { centre, sx, sy, forward } = self.sight;
+        let PlanSight { centre, sx, sy, forward } = self.sight;
         let place = |v: u32| {
             let p = tin.point(v);
             (p.x * sx, p.y * sy)

@@ -22,7 +22,9 @@ use self::shade::Shader;
 use crate::camera::Camera;
 use crate::engines::image::edge::center;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
-use crate::engines::image::{Engine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip};
+use crate::engines::image::{
+    ImageEngine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip,
+};
 use crate::model::scene::Scene;
 use crate::shading::light::{DEFAULT_PAINT, to_bytes};
 use crate::stats::{Seconds, timed};
@@ -41,7 +43,7 @@ const MARGIN: f64 = 0.04;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pixels {
     /// What its center shows.
-    Centers(Engine),
+    Centers(ImageEngine),
     /// The shares of all that shows in it, for anti-aliased and transparent pictures; `opacity` is
     /// from 0 to 1.
     Shares {
@@ -78,7 +80,7 @@ impl Show {
 
 /// How a picture is made.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Options {
+pub struct PreviewOptions {
     /// Columns and rows.
     pub size: (u32, u32),
     /// How pixels are decided.
@@ -100,11 +102,11 @@ pub struct Options {
     pub stroke_px: f64,
 }
 
-impl Default for Options {
+impl Default for PreviewOptions {
     fn default() -> Self {
         Self {
             size: DEFAULT_SIZE,
-            pixels: Pixels::Centers(Engine::default()),
+            pixels: Pixels::Centers(ImageEngine::default()),
             show: Show::default(),
             smooth_deg: None,
             light: None,
@@ -130,7 +132,7 @@ pub enum PreviewError {
     Write(#[from] io::Error),
 }
 
-impl Options {
+impl PreviewOptions {
     /// Where points of the image are in the picture.
     pub fn pixel_map(&self, scene: &Scene, camera: &Camera) -> PixelMap {
         let of_view = if self.fit_fov { PixelMap::field_of_view(camera, self.size) } else { None };
@@ -151,7 +153,7 @@ impl Options {
 pub fn write(
     scene: &Scene,
     camera: &Camera,
-    options: &Options,
+    options: &PreviewOptions,
     edges: Option<&Drawing>,
     out: &mut dyn Write,
     seconds: &mut Seconds,
@@ -171,7 +173,7 @@ pub fn write(
     let raster = timed(&mut seconds.classify, || {
         let size = (width * samples, height * samples);
         match options.pixels {
-            Pixels::Centers(Engine::Painter) => painter::raster(scene, camera, &fine, size),
+            Pixels::Centers(ImageEngine::Painter) => painter::raster(scene, camera, &fine, size),
             _ => Ok(Raster::new(scene, camera, &fine, size)),
         }
     })?;
@@ -217,7 +219,7 @@ pub fn write(
 const STRIPS_A_THREAD: usize = 4;
 
 /// The colors of a strip by pixel centers.
-fn centers(raster: &Raster, number: usize, engine: Engine, shader: &Shader) -> Vec<[u8; 3]> {
+fn centers(raster: &Raster, number: usize, engine: ImageEngine, shader: &Shader) -> Vec<[u8; 3]> {
     let strip = raster.strip(number);
     let width = raster.width();
     let mut items = vec![0; width as usize * strip.rows.len()];

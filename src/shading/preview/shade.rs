@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::{Options, Show};
+use super::{PreviewOptions, Show};
 use crate::camera::{Camera, Frame, Projection};
 use crate::engines::image::{NOTHING, PixelMap, Raster};
 use crate::model::scene::Scene;
@@ -35,7 +35,7 @@ impl<'a> Shader<'a> {
         camera: &Camera,
         map: &PixelMap,
         raster: &'a Raster,
-        options: &Options,
+        options: &PreviewOptions,
     ) -> Self {
         let frame = camera.frame();
         let normals = match options.smooth_deg {

@@ -95,8 +95,8 @@ fn check(scene: &Scene, fragments: &[Fragment], n_checked: &mut [u32; 3]) {
 }
 
 fn check_both(scene: &Scene, n_checked: &mut [u32; 3]) {
-    check(scene, bsp::Tree::new(scene).unwrap().fragments(), n_checked);
-    check(scene, octree::Tree::new(scene).unwrap().fragments(), n_checked);
+    check(scene, bsp::BspTree::new(scene).unwrap().fragments(), n_checked);
+    check(scene, octree::Octree::new(scene).unwrap().fragments(), n_checked);
 }
 
 #[test]

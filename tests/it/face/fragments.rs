@@ -15,8 +15,8 @@ const ROUNDING: f64 = 1e-9;
 /// Trees of random scenes, by either kind.
 fn cut(scene: &Scene) -> [Vec<Fragment>; 2] {
     [
-        bsp::Tree::new(scene).unwrap().fragments().to_vec(),
-        octree::Tree::new(scene).unwrap().fragments().to_vec(),
+        bsp::BspTree::new(scene).unwrap().fragments().to_vec(),
+        octree::Octree::new(scene).unwrap().fragments().to_vec(),
     ]
 }
 
@@ -105,7 +105,7 @@ fn painted_sides_lie_on_the_images_of_their_lines() {
         let mut test_scene = random(seed);
         test_scene.sight = orthographic([1.0, -2.0, -3.0], [0.0, 0.0, 1.0]);
         let (scene, camera) = (Scene::new(mesh(&test_scene)), camera(&test_scene));
-        let tree = octree::Tree::new(&scene).unwrap();
+        let tree = octree::Octree::new(&scene).unwrap();
         for painting in [
             bsp::solve(&scene, &camera).unwrap().0,
             tree.paint(&scene, &camera),

@@ -5,7 +5,7 @@ use crate::oracle::exact::{
 };
 use glam::{DVec2, DVec3};
 use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::face::{Painting, Piece};
+use hiddenline::engines::face::{PaintedPiece, Painting};
 use hiddenline::model::scene::Scene;
 
 /// Samples nearer than this to the border of any piece, in parts of the image's size, are not judged.
@@ -148,7 +148,7 @@ impl<'a> World<'a> {
     /// # Errors
     /// The first point that differs, in words.
     pub(super) fn judge(&self, painting: &Painting, n: u32) -> Result<(u32, u32), String> {
-        let pieces: Vec<(DVec2, DVec2, Piece)> = painting
+        let pieces: Vec<(DVec2, DVec2, PaintedPiece)> = painting
             .pieces()
             .map(|piece| {
                 let points = || piece.rings().flat_map(|ring| ring.points.iter().copied());
@@ -190,7 +190,7 @@ impl<'a> World<'a> {
 }
 
 /// The face of the last piece over a point, if any; `None` too near to a border.
-fn topmost(pieces: &[(DVec2, DVec2, Piece)], at: DVec2, border: f64) -> Option<Option<u32>> {
+fn topmost(pieces: &[(DVec2, DVec2, PaintedPiece)], at: DVec2, border: f64) -> Option<Option<u32>> {
     let mut top = None;
     for (low, high, piece) in pieces {
         let margin = DVec2::splat(border);

@@ -16,7 +16,7 @@ type Solve = fn(&Scene, &Camera) -> Painting;
 const ENGINES: [(&str, Solve); 4] = [
     ("bsp", |scene, camera| bsp::solve(scene, camera).unwrap().0),
     ("octree", |scene, camera| octree::solve(scene, camera).unwrap().0),
-    ("octree, all", |scene, camera| octree::Tree::new(scene).unwrap().paint(scene, camera)),
+    ("octree, all", |scene, camera| octree::Octree::new(scene).unwrap().paint(scene, camera)),
     ("depth sort", |scene, camera| depth_sort::solve(scene, camera).unwrap().0),
 ];
 

@@ -145,5 +145,5 @@ fn heaps_of_faces_that_pierce_each_other_are_refused_before_the_start() {
     assert!(bsp::solve(&built, &camera).is_err());
     assert!(octree::solve(&built, &camera).is_err());
     let refused = depth_sort::solve(&built, &camera).unwrap_err();
-    assert!(matches!(refused, depth_sort::Error::TooManyPiercings(_)), "{refused}");
+    assert!(matches!(refused, depth_sort::DepthSortError::TooManyPiercings(_)), "{refused}");
 }

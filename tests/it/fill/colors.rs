@@ -5,7 +5,7 @@ use crate::scenes::{Model, Scene as TestScene, orthographic};
 use glam::{DVec2, DVec3, dvec2};
 use hiddenline::camera::Camera;
 use hiddenline::camera::framing::Framing;
-use hiddenline::engines::face::Engine;
+use hiddenline::engines::face::FaceEngine;
 use hiddenline::model::scene::Scene;
 use hiddenline::page::{Dash, Page, PageOptions, Placement, PlotOptions};
 use hiddenline::plot::{Fills, Plot};
@@ -121,9 +121,10 @@ fn inks_lie_beside_each_other_whatever_the_engine() {
     let scene = Scene::new(mesh);
     let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
     let sum = |filled: &Filled| filled.layers.iter().map(|layer| area(&layer.fills)).sum::<f64>();
-    let exact = FillOptions { engine: Engine::WeilerAtherton, ..FillOptions::default() };
+    let exact = FillOptions { engine: FaceEngine::WeilerAtherton, ..FillOptions::default() };
     let expected = sum(&fill(&scene, &camera, &exact).unwrap());
-    let engines = [Engine::WeilerAtherton, Engine::Bsp, Engine::Octree, Engine::DepthSort];
+    let engines =
+        [FaceEngine::WeilerAtherton, FaceEngine::Bsp, FaceEngine::Octree, FaceEngine::DepthSort];
     for engine in engines {
         let inks = vec![[0, 0, 128], [230, 120, 30], [250, 250, 240], [255, 0, 0]];
         let palette = Some(Palette::Inks(inks.clone()));

@@ -6,8 +6,10 @@ use super::{built, painted};
 use crate::scenes::{Model, orthographic, perspective};
 use glam::DVec2;
 use hiddenline::camera::framing::Framing;
-use hiddenline::engines::face::warnock::{Options, Subdivision};
-use hiddenline::engines::face::{Engine, Prepared, Settings, Work, bsp, octree, warnock};
+use hiddenline::engines::face::warnock::{Subdivision, WarnockOptions};
+use hiddenline::engines::face::{
+    FaceEngine, FaceOptions, FaceWork, Prepared, bsp, octree, warnock,
+};
 use hiddenline::engines::image::raster::Corners;
 use hiddenline::model::scene::Scene;
 use hiddenline::read::read_file;
@@ -73,16 +75,16 @@ fn faces_that_pierce_each_other_cross_once() {
 fn windows_are_quartered_until_each_is_simple() {
     let (scene, camera) = built(&warnocks_pair());
     let window = Some((DVec2::new(-25.5, 9.5), DVec2::new(-9.5, 25.5)));
-    let options = Options { leaf: Some(1.0), window, subdivision: Subdivision::Regular };
+    let options = WarnockOptions { leaf: Some(1.0), window, subdivision: Subdivision::Regular };
     let (_, counts) = warnock::solve(&scene, &camera, &options).unwrap();
-    let warnock::Counts { windows, divided, empty, covered, single, leaves } = counts;
+    let warnock::WarnockCounts { windows, divided, empty, covered, single, leaves } = counts;
     // 16 by 16 leaves: every window is one of four parts, but for the first.
     assert_eq!(windows, 1 + 4 * divided, "{counts:?}");
     assert_eq!(windows, divided + empty + covered + single + leaves, "{counts:?}");
     // At most the whole tree; the corners of the window are empty.
     assert!(divided < 1 + 4 + 16 + 64 && empty >= 4 && leaves > 0, "{counts:?}");
     // A window that is a leaf is never divided.
-    let options = Options { leaf: Some(16.0), ..options };
+    let options = WarnockOptions { leaf: Some(16.0), ..options };
     let (_, counts) = warnock::solve(&scene, &camera, &options).unwrap();
     assert_eq!([counts.windows, counts.leaves, counts.divided], [1, 1, 0]);
 }
@@ -97,9 +99,9 @@ fn a_tree_of_planes_grows_as_boxes_beside_each_other_do() {
         }
         let (scene, camera) =
             built(&model.seen_by("boxes", orthographic([1.0, 2.0, -3.0], [0.0, 0.0, 1.0])));
-        let prepared = Prepared::new(&scene, Engine::Bsp).unwrap();
-        let (painting, work) = prepared.solve(&camera, &Settings::default()).unwrap();
-        let Work::Bsp { counts, nodes } = work else { panic!("{work:?}") };
+        let prepared = Prepared::new(&scene, FaceEngine::Bsp).unwrap();
+        let (painting, work) = prepared.solve(&camera, &FaceOptions::default()).unwrap();
+        let FaceWork::Bsp { counts, nodes } = work else { panic!("{work:?}") };
         assert_eq!(counts.fragments, u64::from(12 * n) + counts.splits);
         // Of each box three sides face the eye; no fragment is left out.
         assert!(painting.len() as u64 == counts.fragments, "{n}: {counts:?}");
@@ -123,7 +125,7 @@ fn cow() -> Scene {
 #[test]
 fn a_fine_mesh_hides_its_own_back() {
     let scene = cow();
-    let tree = octree::Tree::new(&scene).unwrap();
+    let tree = octree::Octree::new(&scene).unwrap();
     let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
     let (seen, hidden) = tree.paint_seen(&scene, &camera);
     let all = tree.paint(&scene, &camera);
@@ -170,7 +172,7 @@ fn an_open_mesh_hides_nothing_beyond_its_rim() {
     }
     let sight = perspective([30.0, 30.0, 80.0], [30.0, 30.0, 0.0], 1e-3);
     let (scene, camera) = built(&model.seen_by("a sheet with a hole", sight));
-    let tree = octree::Tree::new(&scene).unwrap();
+    let tree = octree::Octree::new(&scene).unwrap();
     let (seen, hidden) = tree.paint_seen(&scene, &camera);
     let behind = seen.pieces().filter(|piece| piece.face >= n_sheet).count();
     eprintln!("{hidden:?}, {behind} pieces behind");

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use hiddenline::camera::{Camera, Projection};
 use hiddenline::engines::face::{
-    Engine, FaceError, Prepared, Settings, Work, depth_sort, weiler_atherton,
+    FaceEngine, FaceError, FaceOptions, FaceWork, Prepared, depth_sort, weiler_atherton,
 };
 use hiddenline::engines::image::{PixelMap, painter};
 use hiddenline::model::mesh::{Mesh, PolygonSoup};
@@ -47,7 +47,7 @@ fn from_above() -> Camera {
     Camera::new(eye, DVec3::ZERO, DVec3::Y, Projection::Orthographic).unwrap()
 }
 
-const COARSE: Settings = Settings {
+const COARSE: FaceOptions = FaceOptions {
     leaf: Some(0.5),
     subdivision: hiddenline::engines::face::warnock::Subdivision::Regular,
 };
@@ -55,15 +55,15 @@ const COARSE: Settings = Settings {
 #[test]
 fn heaps_are_left_to_windows_and_other_engines_say_so_at_once() {
     let heap = heap(500);
-    let free = Prepared::new(&heap, Engine::Auto).unwrap();
-    assert_eq!(free.engine(), Engine::Warnock);
+    let free = Prepared::new(&heap, FaceEngine::Auto).unwrap();
+    assert_eq!(free.engine(), FaceEngine::Warnock);
     assert!(matches!(
-        Prepared::new(&heap, Engine::Bsp).map(|_| ()),
+        Prepared::new(&heap, FaceEngine::Bsp).map(|_| ()),
         Err(FaceError::TooManyFragments(_))
     ));
-    let sorted = Prepared::new(&heap, Engine::DepthSort).unwrap();
+    let sorted = Prepared::new(&heap, FaceEngine::DepthSort).unwrap();
     let error = sorted.solve(&from_above(), &COARSE).unwrap_err();
-    assert!(matches!(error, FaceError::NoOrder(depth_sort::Error::TooManyPiercings(_))));
+    assert!(matches!(error, FaceError::NoOrder(depth_sort::DepthSortError::TooManyPiercings(_))));
     assert!(error.to_string().ends_with("take --engine warnock"), "{error}");
     let map = PixelMap::fitting((DVec2::splat(-9.0), DVec2::splat(9.0)), (64, 64), 1.0);
     let painted = painter::raster(&heap, &from_above(), &map, (64, 64));
@@ -73,13 +73,13 @@ fn heaps_are_left_to_windows_and_other_engines_say_so_at_once() {
 #[test]
 fn planes_that_all_overlap_are_left_to_windows() {
     let planes = tangents(1500);
-    let named = Prepared::new(&planes, Engine::WeilerAtherton).unwrap();
+    let named = Prepared::new(&planes, FaceEngine::WeilerAtherton).unwrap();
     let error = named.solve(&from_above(), &COARSE).unwrap_err();
     assert!(matches!(error, FaceError::TooManyPairs { .. }), "{error}");
-    let free = Prepared::new(&planes, Engine::Auto).unwrap();
+    let free = Prepared::new(&planes, FaceEngine::Auto).unwrap();
     let (painting, work) = free.solve(&from_above(), &COARSE).unwrap();
-    assert!(matches!(work, Work::Warnock(_)) && !painting.is_empty());
-    assert_eq!(work.engine(), Engine::Warnock);
+    assert!(matches!(work, FaceWork::Warnock(_)) && !painting.is_empty());
+    assert_eq!(work.engine(), FaceEngine::Warnock);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::scenes::{Model, number_of_scenes, orthographic, random};
 use glam::{DVec2, dvec2};
 use hiddenline::camera::framing::Framing;
 use hiddenline::engines::face::images::Images;
-use hiddenline::engines::face::warnock::{Counts, Options, Subdivision, solve};
+use hiddenline::engines::face::warnock::{Subdivision, WarnockCounts, WarnockOptions, solve};
 use hiddenline::engines::face::{Painting, weiler_atherton};
 use hiddenline::engines::image::{self, PixelMap, Raster, painter};
 use hiddenline::model::scene::Scene;
@@ -36,7 +36,7 @@ fn the_example_is_16_by_16_pixels_of_which_24_show_a_and_34_show_b() {
     for subdivision in BOTH {
         // Seen from below, the image is mirrored from left to right.
         let window = Some((dvec2(-25.5, 9.5), dvec2(-9.5, 25.5)));
-        let options = Options { leaf: Some(1.0), window, subdivision };
+        let options = WarnockOptions { leaf: Some(1.0), window, subdivision };
         let painting = solve(&scene, &camera, &options).unwrap().0;
         let mut counts = [0; 3];
         for y in 10..26 {
@@ -58,13 +58,15 @@ fn the_example_is_16_by_16_pixels_of_which_24_show_a_and_34_show_b() {
 fn the_example_is_the_picture_of_the_image_space_engines() {
     let (scene, camera) = built(&warnocks_pair());
     let window = Some((dvec2(-25.5, 9.5), dvec2(-9.5, 25.5)));
-    let options = Options { leaf: Some(1.0), window, subdivision: Subdivision::Regular };
+    let options = WarnockOptions { leaf: Some(1.0), window, subdivision: Subdivision::Regular };
     let painting = solve(&scene, &camera, &options).unwrap().0;
     let map = PixelMap { scale: 1.0, origin: dvec2(25.5, 25.5) };
     let raster = Raster::new(&scene, &camera, &map, (16, 16));
-    for engine in image::Engine::ALL {
+    for engine in image::ImageEngine::ALL {
         let raster = match engine {
-            image::Engine::Painter => painter::raster(&scene, &camera, &map, (16, 16)).unwrap(),
+            image::ImageEngine::Painter => {
+                painter::raster(&scene, &camera, &map, (16, 16)).unwrap()
+            }
             _ => raster.clone(),
         };
         for (at, item) in (0..).zip(image::solve(&raster, engine)) {
@@ -72,7 +74,7 @@ fn the_example_is_the_picture_of_the_image_space_engines() {
             let expected = shown(&painting, center);
             // The painter knows only which of both is painted last, not who is first in a tie.
             let is_tie = center.x == -center.y;
-            if !(is_tie && engine == image::Engine::Painter) {
+            if !(is_tie && engine == image::ImageEngine::Painter) {
                 assert_eq!(face(&scene, &raster, item), expected, "{engine:?}: {center}");
             }
         }
@@ -91,7 +93,7 @@ fn windows_show_what_rays_meet_except_near_borders() {
             continue;
         }
         for subdivision in BOTH {
-            let options = Options { leaf: Some(leaf), window: None, subdivision };
+            let options = WarnockOptions { leaf: Some(leaf), window: None, subdivision };
             let painting = solve(&scene, &camera, &options).unwrap().0;
             let name = format!("seed {seed}, {subdivision:?}");
             // Where a face is thinner than a leaf there may be no border near.
@@ -114,7 +116,9 @@ fn both_ways_of_dividing_give_one_picture() {
     let (low, high) = images.bounds;
     let leaf = (high - low).length() / 300.0;
     let [a, b] = BOTH.map(|subdivision| {
-        solve(&scene, &camera, &Options { leaf: Some(leaf), window: None, subdivision }).unwrap().0
+        solve(&scene, &camera, &WarnockOptions { leaf: Some(leaf), window: None, subdivision })
+            .unwrap()
+            .0
     });
     let mut compared = 0;
     for k in 0..2000 {
@@ -131,14 +135,14 @@ fn both_ways_of_dividing_give_one_picture() {
 }
 
 /// What a window with its lower left corner at `low` takes, seen against z on faces.
-fn windows(faces: &[Vec<[f64; 3]>], low: [f64; 2], size: f64, how: Subdivision) -> Counts {
+fn windows(faces: &[Vec<[f64; 3]>], low: [f64; 2], size: f64, how: Subdivision) -> WarnockCounts {
     let mut model = Model::default();
     faces.iter().for_each(|face| model.face(face));
     let sight = orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
     let (scene, camera) = built(&model.seen_by("windows", sight));
     let low = camera.image(glam::DVec3::new(low[0], low[1], 0.0));
     let window = Some((low, low + size));
-    let options = Options { leaf: Some(size / 16.0), window, subdivision: how };
+    let options = WarnockOptions { leaf: Some(size / 16.0), window, subdivision: how };
     solve(&scene, &camera, &options).unwrap().1
 }
 
@@ -154,7 +158,7 @@ fn a_window_behind_a_surrounding_face_is_not_divided() {
     // They cross at x = -4/3, so only depths tell which one is in front in a window.
     let near = ramp(sides, sides, |x| x / 2.0);
     let far = ramp(sides, [-9.0, 9.5], |x| -1.0 - x / 4.0);
-    let covered = Counts { windows: 1, covered: 1, ..Counts::default() };
+    let covered = WarnockCounts { windows: 1, covered: 1, ..WarnockCounts::default() };
     // All of the far face is behind the nearer one's farthest point; then only in the window.
     for low in [[6.0, 1.0], [2.0, 1.0]] {
         for faces in [[near.clone(), far.clone()], [far.clone(), near.clone()]] {

@@ -4,7 +4,7 @@ use super::{built, fitted};
 use crate::scenes::{number_of_scenes, random};
 use glam::DVec3;
 use hiddenline::engines::image::a_buffer::{SIDE, Share, solve as resolve};
-use hiddenline::engines::image::{Engine, NOTHING, Raster, solve};
+use hiddenline::engines::image::{ImageEngine, NOTHING, Raster, solve};
 use std::collections::BTreeMap;
 
 /// The shares in each pixel.
@@ -23,7 +23,7 @@ fn opaque_shares_are_those_of_sixteen_samples() {
         let (scene, camera) = built(&random(seed));
         let (map, _) = fitted(&scene, &camera, (31, 23));
         let fine = Raster::new(&scene, &camera, &map.finer(SIDE), (31 * SIDE, 23 * SIDE));
-        let samples = solve(&fine, Engine::ZBuffer);
+        let samples = solve(&fine, ImageEngine::ZBuffer);
         let pixels = shares(&fine, 1.0);
         assert_eq!(pixels.len(), 31 * 23);
         for (at, pixel) in (0..).zip(&pixels) {

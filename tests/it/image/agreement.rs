@@ -6,15 +6,16 @@ use glam::DVec2;
 use hiddenline::camera::Camera;
 use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
 use hiddenline::engines::image::raster::RasterTriangle;
-use hiddenline::engines::image::{Engine, NOTHING, Raster, painter, solve};
+use hiddenline::engines::image::{ImageEngine, NOTHING, Raster, painter, solve};
 use hiddenline::model::scene::Scene;
 
 /// All but the painter, who does not promise it, and the z-buffer, which they are compared with.
-const OTHERS: [Engine; 4] = [Engine::ScanLine, Engine::Spanning, Engine::Watkins, Engine::RayCast];
+const OTHERS: [ImageEngine; 4] =
+    [ImageEngine::ScanLine, ImageEngine::Spanning, ImageEngine::Watkins, ImageEngine::RayCast];
 
 /// How many pixels differ at equal depths; panics when any differs otherwise.
 fn ties(name: &str, scene: &Scene, raster: &Raster) -> usize {
-    let expected = solve(raster, Engine::ZBuffer);
+    let expected = solve(raster, ImageEngine::ZBuffer);
     let mut ties = 0;
     for engine in OTHERS {
         let found = solve(raster, engine);
@@ -41,7 +42,7 @@ fn engines_agree_on_random_scenes() {
         let (scene, camera) = built(&random(seed));
         let (_, raster) = fitted(&scene, &camera, (61, 47));
         total += ties(&format!("seed {seed}"), &scene, &raster);
-        let items = solve(&raster, Engine::ZBuffer);
+        let items = solve(&raster, ImageEngine::ZBuffer);
         shown += items.iter().filter(|&&item| item != NOTHING).count();
     }
     eprintln!("{n} scenes, {shown} pixels with faces, {total} differ at equal depths");
@@ -81,7 +82,7 @@ fn a_picture_does_not_depend_on_its_strips() {
     let (scene, camera) = built(&random(7));
     let (map, high) = fitted(&scene, &camera, (50, 100));
     let low = Raster::new(&scene, &camera, &map, (50, 45));
-    for engine in Engine::ALL {
+    for engine in ImageEngine::ALL {
         let n = 50 * 45;
         assert_eq!(solve(&high, engine)[..n], solve(&low, engine)[..], "{engine:?}");
     }
@@ -109,7 +110,8 @@ fn painted_otherwise(
 ) -> (usize, usize) {
     let (map, raster) = fitted(scene, camera, size);
     let painted = painter::raster(scene, camera, &map, size).unwrap();
-    let (expected, found) = (solve(&raster, Engine::ZBuffer), solve(&painted, Engine::Painter));
+    let (expected, found) =
+        (solve(&raster, ImageEngine::ZBuffer), solve(&painted, ImageEngine::Painter));
     let shown = expected.iter().filter(|&&item| item != NOTHING).count();
     let mut n_differing = 0;
     for (at, (&a, &b)) in (0..).zip(expected.iter().zip(&found)) {

@@ -10,7 +10,7 @@ use crate::scenes::{number_of_scenes, random};
 use dashu_ratio::RBig;
 use glam::{DVec2, DVec3};
 use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::image::{Engine, solve};
+use hiddenline::engines::image::{ImageEngine, solve};
 
 /// Distances, as parts of the whole, at which floating point is not sure.
 const DOUBT: f64 = 1e-9;
@@ -125,8 +125,8 @@ fn cross(a: &Rational3, b: &Rational3) -> Rational3 {
 
 #[test]
 fn pixels_show_what_sight_lines_meet() {
-    let engines = Engine::ALL.into_iter().filter(|&engine| engine != Engine::Painter);
-    let engines: Vec<Engine> = engines.collect();
+    let engines = ImageEngine::ALL.into_iter().filter(|&engine| engine != ImageEngine::Painter);
+    let engines: Vec<ImageEngine> = engines.collect();
     let (mut judged, mut by_rationals, mut differing) = (0u32, 0u32, 0u32);
     for seed in 0..number_of_scenes(120) {
         let (scene, camera) = built(&random(seed));

@@ -7,7 +7,7 @@ use hiddenline::camera::Camera;
 use hiddenline::camera::framing::{Framing, Standpoint};
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::image::{Engine, solve};
+use hiddenline::engines::image::{ImageEngine, solve};
 use hiddenline::model::scene::Scene;
 use hiddenline::stats::Stats;
 
@@ -31,7 +31,7 @@ fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {
 fn check(name: &str, scene: &Scene, camera: &Camera) {
     let size = (1600, 1200);
     let (map, raster) = fitted(scene, camera, size);
-    let items = solve(&raster, Engine::ZBuffer);
+    let items = solve(&raster, ImageEngine::ZBuffer);
     let faces: Vec<Option<u32>> = items.iter().map(|&item| face(scene, &raster, item)).collect();
     let at = |column: i64, row: i64| faces[(row * i64::from(size.0) + column) as usize];
 

@@ -4,7 +4,7 @@
 //! y = x they are equally near, and the triangle, being the first, is seen.
 
 use glam::DVec3;
-use hiddenline::engines::image::{Engine, NOTHING, Raster, solve};
+use hiddenline::engines::image::{ImageEngine, NOTHING, Raster, solve};
 
 const A: [[f64; 3]; 3] = [[18.5, 12.5, 0.0], [22.5, 16.5, 0.0], [14.5, 22.5, 14.0]];
 const B: [[f64; 3]; 4] =
@@ -50,8 +50,8 @@ fn the_example_has_its_known_picture() {
     // The upper right border passes through four centers: the triangle's when it is on the left.
     for (mirrored, n_a) in [(false, 20), (true, 24)] {
         let raster = picture(mirrored);
-        for engine in Engine::ALL {
-            if engine == Engine::Painter {
+        for engine in ImageEngine::ALL {
+            if engine == ImageEngine::Painter {
                 continue;
             }
             let items = solve(&raster, engine);

@@ -4,7 +4,7 @@ use glam::{DVec3, dvec3};
 use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve as engine};
-use hiddenline::engines::surface::{GridPieces, Order, Side, SurfaceError, max_min};
+use hiddenline::engines::surface::{CellOrder, GridPieces, SurfaceError, SurfaceSide, max_min};
 use hiddenline::surface::{Grid, LatticeLines, LinedMesh};
 
 use super::brute;
@@ -83,14 +83,14 @@ fn check(grid: &Grid, camera: &Camera, name: &str) -> bool {
         Projection::Perspective { .. } => place(camera.eye(), 1),
         Projection::Orthographic => place(-camera.forward(), 0),
     };
-    let by_rows = match max_min::solve(grid, camera, Order::Rows) {
+    let by_rows = match max_min::solve(grid, camera, CellOrder::Rows) {
         Ok(pieces) => pieces,
         Err(SurfaceError::EyeOnSurface) => return false,
         Err(error) => panic!("{name}: {error}"),
     };
-    let by_diagonals = max_min::solve(grid, camera, Order::Diagonals).expect("as by rows");
+    let by_diagonals = max_min::solve(grid, camera, CellOrder::Diagonals).expect("as by rows");
     let truth = brute::grid_lines(grid, eye, scale);
-    let strips = max_min::solve_in_strips(grid, camera, Order::Rows, 1).expect("as by rows");
+    let strips = max_min::solve_in_strips(grid, camera, CellOrder::Rows, 1).expect("as by rows");
     let all = [("rows", &by_rows), ("diagonals", &by_diagonals), ("strips", &strips)];
     for (order, pieces) in all {
         for (edge, (got, expected)) in intervals(pieces).iter().zip(&truth).enumerate() {
@@ -149,7 +149,7 @@ fn a_tall_spike_off_the_axis_hides_no_more_than_it_covers() {
     let camera = camera(dvec3(-2.0, -2.0, 5.0), dvec3(0.0, 2.0, 0.0), PERSPECTIVE);
     assert!((camera.image(dvec3(2.0, 1.0, 0.0)) - glam::dvec2(1.0 / 3.0, 0.0)).length() < 1e-15);
     assert!(check(&grid, &camera, "spike"));
-    let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("a drawing");
+    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
     let lines = intervals(&pieces);
     // Sample (2,1), at which the edges from (1,1) and from (2,0) end.
     let edges: Vec<usize> = (0..lines.len()).filter(|&e| pieces.ends(e as u32)[1] == 5).collect();
@@ -169,7 +169,7 @@ fn valleys_of_a_triangle_wave_are_hidden_where_the_closed_form_says() {
     for slope in [0.5, 0.25, 0.9] {
         let forward = dvec3(1.0, 0.0, -slope);
         let camera = camera(DVec3::ZERO, forward, Projection::Orthographic);
-        let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("a drawing");
+        let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
         let lines = intervals(&pieces);
         // The middle line along x; those on the border have nothing beside them.
         let mut visible: Vec<(f64, f64)> = Vec::new();
@@ -198,7 +198,7 @@ fn sides_of_a_paraboloid_change_at_its_closed_form_contour() {
     let eye = dvec3(-3.0, -1.0, 6.0);
     let radius = (eye.x * eye.x + eye.y * eye.y - eye.z).sqrt();
     let camera = camera(eye, DVec3::ZERO, PERSPECTIVE);
-    let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("a drawing");
+    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
     let mut seen = [0, 0];
     for piece in pieces.iter() {
         let [a, b] = pieces.ends(piece.edge).map(|k| grid.point(k));
@@ -207,7 +207,7 @@ fn sides_of_a_paraboloid_change_at_its_closed_form_contour() {
         // The outer side is seen from below and before the contour, the inner one beyond it.
         // The domain's near border has nothing in front that could tell the sides apart.
         if distance.abs() > 0.05 && a.x > -2.0 {
-            let expected = if distance < 0.0 { Side::Lower } else { Side::Upper };
+            let expected = if distance < 0.0 { SurfaceSide::Lower } else { SurfaceSide::Upper };
             assert_eq!(piece.side, expected, "at {middle}");
             seen[usize::from(distance < 0.0)] += 1;
         }
@@ -220,7 +220,8 @@ fn an_eye_on_the_surface_and_holes_are_refused() {
     let grid =
         |z| Grid::new(vec![0.0, 1.0], vec![0.0, 1.0], vec![0.0, 0.0, 0.0, z]).expect("a grid");
     let camera = camera(dvec3(0.75, 0.25, 0.25), DVec3::ZERO, PERSPECTIVE);
-    let solve = |grid: &Grid| max_min::solve(grid, &camera, Order::Rows).expect_err("no drawing");
+    let solve =
+        |grid: &Grid| max_min::solve(grid, &camera, CellOrder::Rows).expect_err("no drawing");
     assert_eq!(solve(&grid(1.0)), SurfaceError::EyeOnSurface);
     assert_eq!(solve(&grid(f64::NAN)), SurfaceError::Holes);
 }
@@ -229,7 +230,7 @@ fn an_eye_on_the_surface_and_holes_are_refused() {
 fn a_view_from_right_above_hides_nothing() {
     let grid = rough(&mut Dice(3), 1, 6, 5);
     let camera = camera(dvec3(1.0, 1.0, 90.0), dvec3(1.0, 1.0, 0.0), Projection::Orthographic);
-    let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("a drawing");
+    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
     assert!(intervals(&pieces).iter().all(|edge| edge[..] == [(0.0, 1.0)]));
 }
 
@@ -260,7 +261,7 @@ fn an_eye_nearly_in_the_plane_of_a_grid_line_loses_nothing_of_it() {
     let heights = (0..256).map(|k| f64::from(k % 16 * (k / 16) % 7) / 4.0).collect();
     let grid = Grid::new(xs.clone(), xs, heights).expect("a grid");
     let camera = camera(dvec3(-0.3, 5.0, 2.5), DVec3::ZERO, PERSPECTIVE);
-    let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("pieces");
+    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("pieces");
 
     let mut mesh = LinedMesh::default();
     let all = LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: false };

@@ -6,7 +6,7 @@ use glam::{DVec3, dvec3};
 use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::surface::{Order, max_min};
+use hiddenline::engines::surface::{CellOrder, max_min};
 use hiddenline::strokes::StrokeKind;
 use hiddenline::surface::{
     Grid, LatticeLines, LinedMesh, LinedScene, close_seams, delaunay, evenly,
@@ -72,7 +72,7 @@ fn a_mesh_engine_draws_what_max_min_draws() {
             continue;
         }
         let camera = camera(eye, target, projection);
-        let Ok(pieces) = max_min::solve(&grid, &camera, Order::Rows) else {
+        let Ok(pieces) = max_min::solve(&grid, &camera, CellOrder::Rows) else {
             continue;
         };
         let surface = lined(&grid);

@@ -1,7 +1,7 @@
 //! What the pen travels between strokes.
 
 use glam::{DVec3, dvec3};
-use hiddenline::engines::surface::{Lines, Order, max_min, strokes};
+use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
 use hiddenline::surface::Grid;
 use hiddenline::surface::formula::{Formula, Variables};
 
@@ -18,7 +18,7 @@ fn the_pen_is_up_for_less_than_half_of_what_it_draws() {
         grid.scale_heights(height);
         for eye in [dvec3(20.0, -30.0, 25.0), dvec3(20.0, -30.0, 6.0), dvec3(1.0, -25.0, 4.0)] {
             let camera = camera(eye, DVec3::ZERO, PERSPECTIVE);
-            let pieces = max_min::solve(&grid, &camera, Order::Rows).expect("a drawing");
+            let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
             let drawing = strokes(&grid, &pieces, &camera, &Lines::default());
             let (mut up, mut down, mut pen) = (0.0, 0.0, None);
             for stroke in drawing.iter() {

@@ -5,7 +5,7 @@ use glam::{DVec3, dvec3};
 use hiddenline::camera::{Camera, Projection};
 use hiddenline::classify::ViewedScene;
 use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::surface::{Order, max_min, tin};
+use hiddenline::engines::surface::{CellOrder, max_min, tin};
 use hiddenline::engines::visibility::Visibility;
 use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{LatticeLines, LinedMesh, LinedScene, TrimmedGrid, delaunay};
@@ -214,7 +214,7 @@ fn surfaces_of_which_most_is_passed_over_equal_all_pairs() {
         let (by_triangles, _) = tin::solve(&view).expect("pieces");
         let by_triangles: f64 =
             visible(&by_triangles).iter().flatten().map(|(t0, t1)| t1 - t0).sum();
-        let by_cells = max_min::solve(&grid, &camera, Order::Rows).expect("pieces");
+        let by_cells = max_min::solve(&grid, &camera, CellOrder::Rows).expect("pieces");
         let by_cells: f64 = by_cells.iter().map(|piece| piece.t1 - piece.t0).sum();
         assert!((by_cells - by_triangles).abs() < 1e-7, "{round}: {by_cells}, {by_triangles}");
     }

@@ -5,7 +5,7 @@
 
 use super::{Forest, NONE, Node};
 use crate::engines::face::fragment::{Fragment, Position};
-use crate::engines::face::{Counts, piercing};
+use crate::engines::face::{FragmentCounts, piercing};
 use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes};
 use rayon::prelude::*;
@@ -84,16 +84,16 @@ impl Forest {
         scene: &Scene,
         planes: &Planes,
         sets: Vec<Vec<Fragment>>,
-        counts: &mut Counts,
+        counts: &mut FragmentCounts,
     ) -> Result<Vec<u32>, TooManyFragments> {
         let mut roots = vec![NONE; sets.len()];
         let mut waiting: Vec<(Link, Vec<Fragment>)> =
             sets.into_iter().enumerate().map(|(i, set)| (Link::Root(i), set)).collect();
         while !waiting.is_empty() {
-            let grown: Vec<(Link, Grown, Counts)> = waiting
+            let grown: Vec<(Link, Grown, FragmentCounts)> = waiting
                 .into_par_iter()
                 .map(|(link, set)| {
-                    let mut counts = Counts::default();
+                    let mut counts = FragmentCounts::default();
                     let grown = match set.len() {
                         0 => Grown::Nothing,
                         1..=ALONE => Grown::Tree(alone(scene, planes, set, &mut counts)),
@@ -152,7 +152,12 @@ impl Forest {
 }
 
 /// The tree of a small set.
-fn alone(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut Counts) -> Forest {
+fn alone(
+    scene: &Scene,
+    planes: &Planes,
+    set: Vec<Fragment>,
+    counts: &mut FragmentCounts,
+) -> Forest {
     let mut forest = Forest::default();
     let mut waiting = vec![(Link::Root(0), set)];
     while let Some((link, set)) = waiting.pop() {
@@ -177,7 +182,7 @@ fn alone(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut Counts
 ///
 /// Every set ends: a plane of a face takes that face out of the set for good, and one across an axis
 /// is taken only when both sides are clearly smaller.
-fn part(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut Counts) -> Parted {
+fn part(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut FragmentCounts) -> Parted {
     let n = set.len();
     for name in ranked(planes, &set, counts) {
         let plane = planes.plane(name);
@@ -217,7 +222,7 @@ fn part(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut Counts)
 }
 
 /// The candidates, the best first.
-fn ranked(planes: &Planes, set: &[Fragment], counts: &mut Counts) -> Vec<PlaneName> {
+fn ranked(planes: &Planes, set: &[Fragment], counts: &mut FragmentCounts) -> Vec<PlaneName> {
     let n = set.len();
     let spaced = |count: usize| (0..count.min(n)).map(move |k| &set[k * n / count.min(n)]);
     let mut names: Vec<PlaneName> =

@@ -6,19 +6,19 @@ use crate::predicates::{PlaneName, Planes, Sign};
 
 /// Which end of the order comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub enum WalkOrder {
     /// What may be hidden first: the order of painting.
     FarToNear,
     /// What may hide first: for masks of what is done.
     NearToFar,
 }
 
-/// The fragments of a tree in order of sight; see [`Tree::walk`](super::Tree::walk).
+/// The fragments of a tree in order of sight; see [`BspTree::walk`](super::BspTree::walk).
 #[derive(Debug)]
-pub struct Walk<'a> {
+pub struct BspWalk<'a> {
     forest: &'a Forest,
     planes: &'a Planes<'a>,
-    order: Order,
+    order: WalkOrder,
     waiting: Vec<Visit>,
     /// What is left of the fragments of one node, which lie in one plane.
     here: &'a [Fragment],
@@ -26,7 +26,7 @@ pub struct Walk<'a> {
 
 #[derive(Debug, Clone, Copy)]
 enum Visit {
-    Tree(u32),
+    BspTree(u32),
     Plane(u32),
 }
 
@@ -36,21 +36,21 @@ impl Forest {
         &'a self,
         planes: &'a Planes<'a>,
         root: u32,
-        order: Order,
-    ) -> Walk<'a> {
-        let waiting = vec![Visit::Tree(root)];
-        Walk { forest: self, planes, order, waiting, here: &[] }
+        order: WalkOrder,
+    ) -> BspWalk<'a> {
+        let waiting = vec![Visit::BspTree(root)];
+        BspWalk { forest: self, planes, order, waiting, here: &[] }
     }
 }
 
-impl<'a> Iterator for Walk<'a> {
+impl<'a> Iterator for BspWalk<'a> {
     type Item = (&'a Fragment, Sign);
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             let next = match self.order {
-                Order::FarToNear => self.here.split_first(),
-                Order::NearToFar => self.here.split_last(),
+                WalkOrder::FarToNear => self.here.split_first(),
+                WalkOrder::NearToFar => self.here.split_last(),
             };
             if let Some((fragment, rest)) = next {
                 self.here = rest;
@@ -59,8 +59,8 @@ impl<'a> Iterator for Walk<'a> {
                 return Some((fragment, self.planes.side_of_eye(own)));
             }
             match self.waiting.pop()? {
-                Visit::Tree(NONE) => {}
-                Visit::Tree(number) => {
+                Visit::BspTree(NONE) => {}
+                Visit::BspTree(number) => {
                     let node = &self.forest.nodes[number as usize];
                     let facing = self.planes.side_of_eye(node.plane);
                     // With the eye in the plane neither side hides anything of the other.
@@ -70,11 +70,11 @@ impl<'a> Iterator for Walk<'a> {
                         (node.front, node.back)
                     };
                     let (first, last) = match self.order {
-                        Order::FarToNear => (far, near),
-                        Order::NearToFar => (near, far),
+                        WalkOrder::FarToNear => (far, near),
+                        WalkOrder::NearToFar => (near, far),
                     };
                     let plane = Visit::Plane(number);
-                    self.waiting.extend([Visit::Tree(last), plane, Visit::Tree(first)]);
+                    self.waiting.extend([Visit::BspTree(last), plane, Visit::BspTree(first)]);
                 }
                 Visit::Plane(number) => {
                     let node = &self.forest.nodes[number as usize];

@@ -5,7 +5,7 @@
 
 use super::boxes::Boxes;
 use super::relation::{Test, is_across, test};
-use super::{Counts, Error, Item, MAX_SPLITS, MAX_TESTS, Settled};
+use super::{DepthSortCounts, DepthSortError, Item, MAX_SPLITS, MAX_TESTS, Settled};
 use crate::engines::face::fragment::Easel;
 use crate::predicates::{PlaneName, Planes};
 use rustc_hash::FxHashMap;
@@ -102,7 +102,10 @@ impl<'a> List<'a> {
     }
 
     /// All items, or their parts, in the order of painting.
-    pub(super) fn sorted(&mut self, counts: &mut Counts) -> Result<Vec<u32>, Error> {
+    pub(super) fn sorted(
+        &mut self,
+        counts: &mut DepthSortCounts,
+    ) -> Result<Vec<u32>, DepthSortError> {
         let max_splits = MAX_SPLITS * (self.items.len() as u64 + 64);
         let mut order = Vec::with_capacity(self.items.len());
         while let Some(Farthest(_, number)) = self.heap.pop() {
@@ -149,10 +152,10 @@ impl<'a> List<'a> {
                     },
                 }
                 if counts.splits > max_splits {
-                    return Err(Error::TooManySplits(counts.splits));
+                    return Err(DepthSortError::TooManySplits(counts.splits));
                 }
                 if counts.tests > MAX_TESTS {
-                    return Err(Error::TooManyTests(counts.tests));
+                    return Err(DepthSortError::TooManyTests(counts.tests));
                 }
             }
         }

@@ -1,9 +1,9 @@
 //! Octants from near to far, without those that are hidden.
 
 use super::seams::Seams;
-use super::{Leaves, Octant, Tree};
+use super::{Leaves, Octant, Octree};
 use crate::camera::Camera;
-use crate::engines::face::bsp::Order;
+use crate::engines::face::bsp::WalkOrder;
 use crate::engines::face::fragment::Easel;
 use crate::engines::face::occupancy::Occupancy;
 use crate::engines::face::painting::Painting;
@@ -29,7 +29,7 @@ pub struct Hidden {
     pub painted: u64,
 }
 
-impl Tree {
+impl Octree {
     /// The fragments from far to near, cut at the near plane, without most of those that nearer ones
     /// hide. `scene` must be that of the tree.
     ///
@@ -49,7 +49,7 @@ impl Tree {
         let mut missing_of_triangle = self.of_triangle.clone();
         let mut hidden =
             Hidden { hidden_fragments: self.fragments().len() as u64, ..Hidden::default() };
-        let mut leaves = Leaves::new(self, &planes, Order::NearToFar);
+        let mut leaves = Leaves::new(self, &planes, WalkOrder::NearToFar);
         loop {
             let next = leaves.next(|octant| {
                 let is_hidden = view.hides(&occupancy, octant);
@@ -57,7 +57,7 @@ impl Tree {
                 !is_hidden
             });
             let Some(root) = next else { break };
-            for (fragment, facing) in self.forest.walk(&planes, root, Order::NearToFar) {
+            for (fragment, facing) in self.forest.walk(&planes, root, WalkOrder::NearToFar) {
                 hidden.hidden_fragments -= 1;
                 let face = view.easel.face(fragment);
                 let triangle = fragment.triangle();

@@ -9,11 +9,11 @@
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::{SLIVER_STEPS, Side};
+use super::{RegionSide, SLIVER_STEPS};
 use crate::engines::face::boxes::BoxIndex;
 
 /// The sides with their corners on each other where they are near.
-pub(super) fn welded(sides: Vec<Side>) -> Vec<Side> {
+pub(super) fn welded(sides: Vec<RegionSide>) -> Vec<RegionSide> {
     let mut corners: Vec<DVec2> = sides.iter().map(|side| side.from).collect();
     corners.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     corners.dedup();
@@ -22,13 +22,14 @@ pub(super) fn welded(sides: Vec<Side>) -> Vec<Side> {
         let place = corners.binary_search_by(|p| p.x.total_cmp(&at.x).then(p.y.total_cmp(&at.y)));
         place.map_or(at, |number| corners[kept[number] as usize])
     };
-    let moved: Vec<Side> = sides
+    let moved: Vec<RegionSide> = sides
         .into_iter()
-        .map(|side| Side { from: find(side.from), to: find(side.to), ..side })
+        .map(|side| RegionSide { from: find(side.from), to: find(side.to), ..side })
         .filter(|side| side.from != side.to)
         .collect();
     let around = DVec2::splat(SLIVER_STEPS);
-    let bounds = |side: &Side| (side.from.min(side.to) - around, side.from.max(side.to) + around);
+    let bounds =
+        |side: &RegionSide| (side.from.min(side.to) - around, side.from.max(side.to) + around);
     let index = BoxIndex::new(moved.iter().map(bounds).collect());
     // The corners on each side, as part of the way along it.
     let mut on_side: Vec<(u32, f64, DVec2)> = Vec::new();
@@ -39,7 +40,7 @@ pub(super) fn welded(sides: Vec<Side>) -> Vec<Side> {
         }
         index.overlapping((corner - 1.0, corner + 1.0), &mut near);
         for &side in &near {
-            let Side { from, to, .. } = moved[side as usize];
+            let RegionSide { from, to, .. } = moved[side as usize];
             let (way, past) = (to - from, corner - from);
             let part = past.dot(way) / way.length_squared();
             let inside = corner != from && corner != to && part > 0.0 && part < 1.0;
@@ -54,10 +55,10 @@ pub(super) fn welded(sides: Vec<Side>) -> Vec<Side> {
     for (number, side) in (0..).zip(moved) {
         let mut from = side.from;
         while let Some((_, _, corner)) = next.next_if(|(side, _, _)| *side == number) {
-            result.push(Side { from, to: corner, ..side });
+            result.push(RegionSide { from, to: corner, ..side });
             from = corner;
         }
-        result.push(Side { from, ..side });
+        result.push(RegionSide { from, ..side });
     }
     result
 }

@@ -10,9 +10,10 @@
 
 use std::cmp::Ordering;
 
-use super::{Break, Horizon, Kind, Piece};
+use super::{Break, Horizon, HorizonPiece, Kind};
 use crate::engines::surface::segment::{
-    Cell, Diagonal, End, Line, Plane, Samples, Segment, Vertex, filtered,
+    Cell, Diagonal, End, HorizonLine, HorizonPlane, HorizonSegment, HorizonVertex, Samples,
+    filtered,
 };
 
 impl Horizon {
@@ -30,7 +31,7 @@ impl Horizon {
     #[inline]
     pub(in crate::engines::surface) fn advance<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
+        plane: &HorizonPlane<S>,
         cell: &Cell,
     ) -> bool {
         let Some(near_edges) = self.near_edges(cell) else {
@@ -41,7 +42,7 @@ impl Horizon {
             return false;
         };
         self.work.comparisons += 2;
-        let segment = |a, b| Segment::new(plane, (a, End::Vertex), (b, End::Vertex)).line;
+        let segment = |a, b| HorizonSegment::new(plane, (a, End::Vertex), (b, End::Vertex)).line;
         let (left_far, far_right) = (segment(left, far), segment(far, right));
         let (beside_far, beside_near) = match order {
             Ordering::Less => (near_edges[1], left_far),
@@ -56,9 +57,9 @@ impl Horizon {
         }
         let at_left = self.right.pop().map(|piece| piece.from);
         if let (Some(from), Some(next)) = (at_left, self.right.last_mut()) {
-            self.left.push(Piece { line: left_far, from });
+            self.left.push(HorizonPiece { line: left_far, from });
             let from = Break { u: far.u, error: plane.du, kind: Kind::Vertex(far.id) };
-            *next = Piece { line: far_right, from };
+            *next = HorizonPiece { line: far_right, from };
         }
         true
     }
@@ -66,8 +67,8 @@ impl Horizon {
     /// The near edges of a cell, if the horizon lies on both between left and right and no break is
     /// in them but near. Then the next piece on the right is the first of the two.
     #[inline]
-    fn near_edges(&mut self, cell: &Cell) -> Option<[Line; 2]> {
-        let joins = |piece: &Piece, a: Vertex, b: Vertex| {
+    fn near_edges(&mut self, cell: &Cell) -> Option<[HorizonLine; 2]> {
+        let joins = |piece: &HorizonPiece, a: HorizonVertex, b: HorizonVertex| {
             (piece.line.a, piece.line.b) == (a.id, b.id) && piece.from.kind == Kind::Vertex(a.id)
         };
         // The finger may stand at near, when the cell before was added segment by segment.
@@ -84,12 +85,22 @@ impl Horizon {
     }
 
     #[inline]
-    fn is_surely_beyond<S: Samples>(&self, plane: &Plane<S>, p: Vertex, line: &Line) -> bool {
+    fn is_surely_beyond<S: Samples>(
+        &self,
+        plane: &HorizonPlane<S>,
+        p: HorizonVertex,
+        line: &HorizonLine,
+    ) -> bool {
         self.side_of(plane, p, line) == Some(Ordering::Greater)
     }
 
     #[inline]
-    fn is_surely_within<S: Samples>(&self, plane: &Plane<S>, p: Vertex, line: &Line) -> bool {
+    fn is_surely_within<S: Samples>(
+        &self,
+        plane: &HorizonPlane<S>,
+        p: HorizonVertex,
+        line: &HorizonLine,
+    ) -> bool {
         self.side_of(plane, p, line) == Some(Ordering::Less)
     }
 }

@@ -1,7 +1,9 @@
 //! Breaks, where one piece of a horizon gives way to the next, and stops, where visible runs end.
 
-use super::{Horizon, Piece};
-use crate::engines::surface::segment::{CROSSING_PRECISION, End, Plane, Samples, Segment, UNIT};
+use super::{Horizon, HorizonPiece};
+use crate::engines::surface::segment::{
+    CROSSING_PRECISION, End, HorizonPlane, HorizonSegment, Samples, UNIT,
+};
 
 /// Where a piece begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +40,7 @@ pub(in crate::engines::surface) enum Stop {
 
 impl Horizon {
     /// The break where a segment begins.
-    pub(super) fn left_break(&self, s: &Segment, piece: &Piece, du: f64) -> Break {
+    pub(super) fn left_break(&self, s: &HorizonSegment, piece: &HorizonPiece, du: f64) -> Break {
         match s.left {
             End::Vertex => Break { u: s.line.ua, error: du, kind: Kind::Vertex(s.line.a) },
             End::Border => piece.from,
@@ -48,9 +50,9 @@ impl Horizon {
     /// Where the segment crosses a piece, between given ends of their common range.
     pub(super) fn crossing<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        piece: &Piece,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
+        piece: &HorizonPiece,
         at_start: bool,
         next: Option<Break>,
         at_end: bool,
@@ -95,7 +97,7 @@ impl Horizon {
 }
 
 /// Where a run begins that begins with its segment.
-pub(super) fn left_stop(s: &Segment, border: f64) -> Stop {
+pub(super) fn left_stop(s: &HorizonSegment, border: f64) -> Stop {
     match s.left {
         End::Vertex => Stop::Left,
         End::Border => Stop::Border(border),

@@ -4,15 +4,20 @@
 use std::cmp::Ordering;
 
 use super::{Break, Horizon, Kind};
-use crate::engines::surface::plan_predicates::Place;
+use crate::engines::surface::plan_predicates::PlaceOnU;
 use crate::engines::surface::segment::{
-    End, Line, Plane, Samples, Segment, UNIT, Vertex, filtered,
+    End, HorizonLine, HorizonPlane, HorizonSegment, HorizonVertex, Samples, UNIT, filtered,
 };
 
 impl Horizon {
     /// Where a break lies along u compared with a sample.
     #[inline]
-    pub(super) fn order_of<S: Samples>(&self, plane: &Plane<S>, b: Break, p: Vertex) -> Ordering {
+    pub(super) fn order_of<S: Samples>(
+        &self,
+        plane: &HorizonPlane<S>,
+        b: Break,
+        p: HorizonVertex,
+    ) -> Ordering {
         if let Some(order) = filtered(b.u - p.u, b.error + plane.du) {
             return order;
         }
@@ -39,9 +44,9 @@ impl Horizon {
     #[inline]
     pub(super) fn side_of<S: Samples>(
         &self,
-        plane: &Plane<S>,
-        p: Vertex,
-        line: &Line,
+        plane: &HorizonPlane<S>,
+        p: HorizonVertex,
+        line: &HorizonLine,
     ) -> Option<Ordering> {
         filtered((p.v - line.at(p.u)) * self.up, line.error + plane.v_error(p.v))
     }
@@ -49,9 +54,9 @@ impl Horizon {
     /// Whether a sample is beyond a line: `Greater` is above for the upper horizon.
     pub(super) fn point_over<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        p: Vertex,
-        line: &Line,
+        plane: &HorizonPlane<S>,
+        p: HorizonVertex,
+        line: &HorizonLine,
     ) -> Ordering {
         if p.id == line.a || p.id == line.b {
             return Ordering::Equal;
@@ -66,24 +71,24 @@ impl Horizon {
 
     fn at_border<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
+        line: &HorizonLine,
         u: f64,
     ) -> Ordering {
         let difference = (s.line.at(u) - line.at(u)) * self.up;
         if let Some(order) = filtered(difference, s.line.error + line.error) {
             return order;
         }
-        self.lines_at(plane, s, line, Place::Border(u))
+        self.lines_at(plane, s, line, PlaceOnU::Border(u))
     }
 
     fn lines_at<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
-        at: Place,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
+        line: &HorizonLine,
+        at: PlaceOnU,
     ) -> Ordering {
         if (s.line.a, s.line.b) == (line.a, line.b) {
             return Ordering::Equal;
@@ -95,9 +100,9 @@ impl Horizon {
 
     pub(super) fn left_end<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
+        line: &HorizonLine,
     ) -> Ordering {
         match s.left {
             End::Vertex => self.point_over(plane, s.a(), line),
@@ -107,9 +112,9 @@ impl Horizon {
 
     pub(super) fn right_end<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
+        line: &HorizonLine,
     ) -> Ordering {
         match s.right {
             End::Vertex => self.point_over(plane, s.b(), line),
@@ -121,9 +126,9 @@ impl Horizon {
     #[inline]
     pub(super) fn at_break<S: Samples>(
         &mut self,
-        plane: &Plane<S>,
-        s: &Segment,
-        line: &Line,
+        plane: &HorizonPlane<S>,
+        s: &HorizonSegment,
+        line: &HorizonLine,
         b: Break,
     ) -> Ordering {
         let difference = (s.line.at(b.u) - line.at(b.u)) * self.up;
@@ -135,7 +140,7 @@ impl Horizon {
             return order;
         }
         match b.kind {
-            Kind::Border => self.lines_at(plane, s, line, Place::Border(b.u)),
+            Kind::Border => self.lines_at(plane, s, line, PlaceOnU::Border(b.u)),
             Kind::Vertex(id) => {
                 let on_segment = id == s.line.a || id == s.line.b;
                 let on_line = id == line.a || id == line.b;
@@ -151,7 +156,9 @@ impl Horizon {
                         let [p, a, b] = [id, line.a, line.b].map(|id| plane.point(id));
                         self.upward(plane.sight.point_over_line(p, a, b))
                     }
-                    (false, false) => self.lines_at(plane, s, line, Place::Vertex(plane.point(id))),
+                    (false, false) => {
+                        self.lines_at(plane, s, line, PlaceOnU::Vertex(plane.point(id)))
+                    }
                 }
             }
             Kind::Crossing(first, second) => {
