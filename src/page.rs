@@ -285,8 +285,8 @@ impl PlacedPlot {
                 number: layers.len() as u32 + 1,
                 name: layer.name.clone(),
                 pen: Pen { width_mm: seam_mm, color: format!("#{r:02x}{g:02x}{b:02x}") },
-                lines: Default::default(),
                 fills,
+                ..Layer::default()
             });
         }
         let n_fills = layers.len() as u32;

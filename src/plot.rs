@@ -3,6 +3,8 @@
 //! Page coordinates have their origin at the top left corner of the paper, x to the right and y
 //! *downwards*, in millimetres.
 
+use std::borrow::Cow;
+
 use glam::DVec2;
 
 /// A sheet of paper with everything that is drawn on it.
@@ -20,19 +22,52 @@ pub struct Plot {
     pub layers: Vec<Layer>,
 }
 
+impl Plot {
+    /// The layers that machines draw: all but those that [`Layer::is_plotted`] excludes.
+    pub fn plotted_layers(&self) -> impl Iterator<Item = &Layer> {
+        self.layers.iter().filter(|layer| layer.is_plotted())
+    }
+}
+
 /// Everything one pen draws.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layer {
     /// The pen's number, 1 or more; plotters and their software select layers by it.
     pub number: u32,
     /// What the layer holds, as a word: `visible`, `hidden`.
     pub name: String,
+    /// The layer's label in SVG; `None` for number and name, as in `1 visible`.
+    ///
+    /// AxiDraw's software reads control characters at its start: `%` for a layer that is never
+    /// plotted, `!` for a pause, then a number, then `+S`, `+H` and `+D` for speed, pen height and
+    /// delay.
+    pub label: Option<String>,
     /// The pen.
     pub pen: Pen,
     /// Polylines in page millimetres; a closed one ends at its first point.
     pub lines: Polylines,
     /// Areas in page millimetres, painted in their order and before the lines. Plotters have none.
     pub fills: Fills,
+}
+
+impl Layer {
+    /// The label in SVG.
+    pub fn label(&self) -> Cow<'_, str> {
+        match &self.label {
+            Some(label) => label.into(),
+            None => format!("{} {}", self.number, self.name).into(),
+        }
+    }
+
+    /// Whether machines draw the layer. Those whose label begins with `%` are for the screen only.
+    pub fn is_plotted(&self) -> bool {
+        !self.label.as_ref().is_some_and(|label| label.trim_start().starts_with('%'))
+    }
+
+    /// Whether the machine pauses before the layer: the label begins with `!`.
+    pub fn pauses(&self) -> bool {
+        self.label.as_ref().is_some_and(|label| label.trim_start().starts_with('!'))
+    }
 }
 
 /// What draws a layer.
@@ -42,6 +77,13 @@ pub struct Pen {
     pub width_mm: f64,
     /// Colour as `#rrggbb`.
     pub color: String,
+}
+
+impl Default for Pen {
+    /// A fine black pen.
+    fn default() -> Self {
+        Self { width_mm: 0.3, color: "#000000".to_owned() }
+    }
 }
 
 /// Polylines in one flat array.

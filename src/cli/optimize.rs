@@ -108,7 +108,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
             name,
             pen: rule.pen,
             lines,
-            fills: Default::default(),
+            ..Default::default()
         }];
     }
     if plot.title.is_empty() {

@@ -132,7 +132,7 @@ impl Estimate {
 pub fn estimate(plot: &Plot, motion: &Motion) -> Estimate {
     let mut sum = Estimate::default();
     let mut last = None;
-    for layer in &plot.layers {
+    for layer in plot.plotted_layers() {
         add_lines(&mut sum, &mut last, &layer.lines, motion);
     }
     sum

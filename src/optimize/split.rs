@@ -33,7 +33,7 @@ pub fn split_by_distance(plot: &Plot, distance_mm: f64) -> Plot {
                 _ => format!("{}-part-{}", layer.name, i + 1),
             };
             let fills = if i == 0 { layer.fills.clone() } else { Default::default() };
-            layers.push(Layer { number: 0, name, pen: layer.pen.clone(), lines, fills });
+            layers.push(Layer { name, lines, fills, ..layer.clone() });
         }
     }
     // Only a split moves the numbers, so that whole drawings keep the pens they were given.

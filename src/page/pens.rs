@@ -3,7 +3,7 @@
 use crate::draw::HiddenLines;
 use std::borrow::Cow;
 
-use crate::plot::{Fills, Layer, Pen, Polylines};
+use crate::plot::{Layer, Pen, Polylines};
 use crate::strokes::{Stroke, StrokeKind};
 
 use super::PlotOptions;
@@ -113,7 +113,7 @@ impl Holder {
             name,
             pen,
             lines: Polylines::default(),
-            fills: Fills::default(),
+            ..Layer::default()
         });
         self.fixed.push(fixed);
         self.layers.len() - 1

@@ -41,13 +41,7 @@ pub(super) fn numbered(pens: Vec<PenLines>) -> Vec<Layer> {
         let word = |c: char| if c.is_alphanumeric() || c == '_' || c == '-' { c } else { '-' };
         let name: String = label.trim().chars().map(word).collect();
         let name = if name.is_empty() { "lines".to_owned() } else { name };
-        layers.push(Layer {
-            number,
-            name,
-            pen: pen.pen,
-            lines: pen.lines,
-            fills: Default::default(),
-        });
+        layers.push(Layer { number, name, pen: pen.pen, lines: pen.lines, ..Layer::default() });
     }
     layers
 }

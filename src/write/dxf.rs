@@ -34,8 +34,8 @@ pub fn write(plot: &Plot, out: &mut dyn io::Write) -> io::Result<()> {
     out.text(2, "TABLES")?;
     out.text(0, "TABLE")?;
     out.text(2, "LAYER")?;
-    out.text(70, &plot.layers.len().to_string())?;
-    for layer in &plot.layers {
+    out.text(70, &plot.plotted_layers().count().to_string())?;
+    for layer in plot.plotted_layers() {
         out.text(0, "LAYER")?;
         out.text(2, &layer_name(layer))?;
         out.text(70, "0")?;
@@ -46,7 +46,7 @@ pub fn write(plot: &Plot, out: &mut dyn io::Write) -> io::Result<()> {
     out.text(0, "ENDSEC")?;
     out.text(0, "SECTION")?;
     out.text(2, "ENTITIES")?;
-    for layer in &plot.layers {
+    for layer in plot.plotted_layers() {
         let name = layer_name(layer);
         for line in layer.lines.iter().filter(|line| line.iter().all(|p| p.is_finite())) {
             write_stroke(line, &name, plot.height_mm, &mut out)?;

@@ -211,7 +211,7 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
     let mut writer = Writer { plot, profile, layer: None, text: String::new() };
     writer.expand(&profile.start, 0.0, 0.0);
     let mut first = true;
-    for layer in plot.layers.iter().filter(|layer| !layer.lines.is_empty()) {
+    for layer in plot.plotted_layers().filter(|layer| !layer.lines.is_empty()) {
         writer.layer = Some(layer);
         if !first {
             writer.expand(&profile.pen_change, 0.0, 0.0);

@@ -186,7 +186,8 @@ impl Profile {
                     known: known(),
                 })?,
         };
-        let beyond = plot.layers.iter().find(|layer| !(1..=machine.pens).contains(&layer.number));
+        let beyond =
+            plot.plotted_layers().find(|layer| !(1..=machine.pens).contains(&layer.number));
         if let Some(layer) = beyond {
             return Err(Error::NoSuchPen {
                 machine: machine.title.clone(),
@@ -218,7 +219,7 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
     }
     let low = dvec2(f64::from(paper.x[0]), f64::from(paper.y[0]));
     let high = dvec2(f64::from(paper.x[1]), f64::from(paper.y[1]));
-    for layer in &plot.layers {
+    for layer in plot.plotted_layers() {
         if layer.lines.is_empty() {
             continue;
         }

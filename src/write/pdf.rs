@@ -42,7 +42,7 @@ fn content(plot: &Plot) -> Content {
     // Page millimetres with y down from here on.
     content.transform([POINTS_PER_MM, 0.0, 0.0, -POINTS_PER_MM, 0.0, height]);
     content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
-    for layer in &plot.layers {
+    for layer in plot.plotted_layers() {
         fill(&layer.fills, &mut content);
         let [r, g, b] = [1, 3, 5].map(|i| {
             let hex = layer.pen.color.get(i..i + 2);

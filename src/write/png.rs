@@ -110,9 +110,9 @@ pub fn write_marked(
     let mut pixmap = Pixmap::new(width_px as u32, height_px as u32).ok_or_else(too_large)?;
     pixmap.fill(Color::WHITE);
     let mut gray = !marks.travel && !marks.order;
-    let n_strokes: usize = plot.layers.iter().map(|layer| layer.lines.len()).sum();
+    let n_strokes: usize = plot.plotted_layers().map(|layer| layer.lines.len()).sum();
     let mut n_drawn = 0;
-    for layer in &plot.layers {
+    for layer in plot.plotted_layers() {
         let color = parse_color(&layer.pen.color)?;
         gray &= is_gray(color) && layer.fills.iter().all(|area| is_gray(area.color));
         fill(&layer.fills, px_per_mm, &mut pixmap);
@@ -139,7 +139,7 @@ pub fn write_marked(
         n_drawn += layer.lines.len();
     }
     if marks.travel {
-        for layer in &plot.layers {
+        for layer in plot.plotted_layers() {
             let (from, to) = (layer.lines.iter(), layer.lines.iter().skip(1));
             let ways: Vec<[DVec2; 2]> =
                 from.zip(to).filter_map(|(a, b)| Some([*a.last()?, *b.first()?])).collect();

@@ -73,7 +73,7 @@ fn group(layer: &Layer, element: StrokeElement) -> Group {
     let mut group = Group::new()
         .set("id", format!("pen{}-{}", layer.number, layer.name))
         .set("inkscape:groupmode", "layer")
-        .set("inkscape:label", format!("{} {}", layer.number, layer.name))
+        .set("inkscape:label", printable(&layer.label()))
         .set("fill", "none")
         .set("stroke", layer.pen.color.as_str())
         .set("stroke-width", millimetres(layer.pen.width_mm))

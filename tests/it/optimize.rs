@@ -403,8 +403,7 @@ fn layers_are_split_between_strokes() {
     let stroke = |y: f64| vec![dvec2(0.0, y), dvec2(100.0, y)];
     let pen = Pen { width_mm: 0.3, color: "#000000".to_owned() };
     let lines = polylines(&[stroke(0.0), stroke(1.0), stroke(2.0), stroke(3.0), stroke(4.0)]);
-    let layer =
-        Layer { number: 1, name: "visible".to_owned(), pen, lines, fills: Default::default() };
+    let layer = Layer { number: 1, name: "visible".to_owned(), pen, lines, ..Layer::default() };
     let plot = Plot { width_mm: 200.0, height_mm: 10.0, layers: vec![layer], ..Plot::default() };
     let split = hiddenline::optimize::split_by_distance(&plot, 250.0);
     let parts: Vec<(u32, usize)> = split.layers.iter().map(|l| (l.number, l.lines.len())).collect();

@@ -11,7 +11,7 @@ fn plot(width_mm: f64, height_mm: f64, layers: &[&[&[(f64, f64)]]]) -> Plot {
             lines.push(stroke.iter().map(|&(x, y)| dvec2(x, y)));
         }
         let pen = Pen { width_mm: 0.3, color: "#ff0000".to_owned() };
-        Layer { number, name: "visible; (M5)\n".to_owned(), pen, lines, fills: Default::default() }
+        Layer { number, name: "visible; (M5)\n".to_owned(), pen, lines, ..Layer::default() }
     });
     Plot {
         width_mm,

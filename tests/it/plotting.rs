@@ -336,7 +336,7 @@ fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
         name: "lines".into(),
         pen: hiddenline::plot::Pen { width_mm: 0.3, color: "#000000".into() },
         lines,
-        fills: Default::default(),
+        ..Default::default()
     };
     let plot = hiddenline::plot::Plot { layers: vec![layer], ..Default::default() };
     let (done, _) = optimize(&plot, &Options::default());

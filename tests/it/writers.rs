@@ -58,13 +58,8 @@ fn svg_of(lines: &[&[DVec2]], element: StrokeElement) -> String {
         polylines.push(line.iter().copied());
     }
     let pen = Pen { width_mm: 0.3, color: "#000000".into() };
-    let layer = Layer {
-        number: 1,
-        name: "visible".into(),
-        pen,
-        lines: polylines,
-        fills: Default::default(),
-    };
+    let layer =
+        Layer { number: 1, name: "visible".into(), pen, lines: polylines, ..Default::default() };
     let plot = Plot {
         width_mm: 297.0,
         height_mm: 210.0,
@@ -264,7 +259,7 @@ fn png_is_true_to_scale_on_white() {
     let mut lines = Polylines::default();
     lines.push([dvec2(0.0, 5.0), dvec2(20.0, 5.0)]);
     let pen = Pen { width_mm: 1.0, color: "#000000".into() };
-    let layer = Layer { number: 1, name: "visible".into(), pen, lines, fills: Default::default() };
+    let layer = Layer { number: 1, name: "visible".into(), pen, lines, ..Layer::default() };
     let plot = Plot { width_mm: 20.0, height_mm: 10.0, layers: vec![layer], ..Plot::default() };
     let mut bytes = Vec::new();
     png::write(&plot, Resolution::WidthPx(200), &mut bytes).expect("memory");
