@@ -2,32 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-mod appel;
-mod bends;
-mod cli;
-mod closed_forms;
-mod drawings;
-mod engines;
-mod face;
-mod fill;
-mod formula;
-mod gallery;
-mod hidden_levels;
-mod image;
-mod intersections;
-mod laws;
-mod materials;
-mod mistakes;
-mod optimize;
+// What the tests need: scenes made for the purpose, models of others, and the truth about both.
+mod models;
 mod oracle;
-mod outline;
-mod plotter_formats;
-mod plotting;
-mod read_svg;
-mod readers;
 mod scenes;
-mod strokes;
-mod surface;
-mod truth;
-mod views;
-mod writers;
+
+// The library: what every engine and stage must obey, and what readers accept and refuse.
+mod laws;
+mod readers;
+
+// The program as users run it, and the pictures in `plots/`.
+mod golden;
+mod program;

@@ -1,24 +1,13 @@
 //! The folder of real and malformed models beside the repository.
 
-use std::path::PathBuf;
-
 use hiddenline::read::read_file;
 
 use super::assert_message;
-
-/// The folder of real models beside the repository, if it is there.
-fn models() -> Option<PathBuf> {
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models"));
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: {} is missing", folder.display());
-    None
-}
+use crate::models;
 
 #[test]
 fn malformed_files_are_refused_with_place_and_reason() {
-    let Some(models) = models() else { return };
+    let Some(models) = models::folder() else { return };
     for (file, line, part) in [
         ("ascii_missing_endloop.stl", Some(6), "ends early"),
         ("assimp_malformed.obj", Some(28), "vertex 0"),
@@ -47,7 +36,7 @@ fn malformed_files_are_refused_with_place_and_reason() {
 
 #[test]
 fn odd_but_sound_files_are_drawn() {
-    let Some(models) = models() else { return };
+    let Some(models) = models::folder() else { return };
     for (file, vertices, faces, warnings) in [
         ("cr_only_lines.obj", 3, 1, &[][..]),
         ("line_continuation.obj", 3, 1, &[]),
@@ -78,14 +67,14 @@ fn odd_but_sound_files_are_drawn() {
 
 #[test]
 fn every_malformed_file_has_an_expectation() {
-    let Some(models) = models() else { return };
+    let Some(models) = models::folder() else { return };
     let n_files = std::fs::read_dir(models.join("malformed")).map(Iterator::count);
     assert_eq!(n_files.ok(), Some(17 + 7));
 }
 
 #[test]
 fn real_models_have_the_counts_of_their_index() {
-    let Some(models) = models() else { return };
+    let Some(models) = models::folder() else { return };
     let index = std::fs::read_to_string(models.join("index.tsv")).expect("index.tsv");
     let mut n_models = 0;
     for row in index.lines().skip(1) {

@@ -1,10 +1,12 @@
-//! Model files: what is read, what is refused, what is skipped with a word.
+//! Files and formulas: what is read, what is refused, what is left out with a warning.
 
 mod cube;
 mod damage;
 mod folder;
+mod formula;
 mod hostile;
 mod obj;
+mod svg;
 mod weld;
 
 use hiddenline::read::{Model, ReadError, read_bytes};

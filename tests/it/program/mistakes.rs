@@ -1,0 +1,334 @@
+//! What users mistype, and what the program makes of it: one mistake a test.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::{CUBE, hiddenline, text};
+
+const LINE: &str = "\
+<svg xmlns='http://www.w3.org/2000/svg' width='210mm' height='297mm' viewBox='0 0 210 297'>
+<path d='M50 50L100 50' fill='none' stroke='black'/></svg>";
+
+/// A folder with a model and its materials, heights, points and an SVG.
+fn with_files() -> (TempDir, PathBuf) {
+    let keep = tempfile::tempdir().unwrap();
+    let folder = keep.path().to_owned();
+    for (name, content) in [
+        ("cube.obj", &*format!("mtllib cube.mtl\n{CUBE}")),
+        ("cube.mtl", "newmtl red\nKd 1 0 0\n"),
+        ("heights.csv", "1,2\n3,5\n"),
+        ("points.xyz", "0 0 1\n1 0 2\n0 1 3\n"),
+        ("line.svg", LINE),
+    ] {
+        fs::write(folder.join(name), content).unwrap();
+    }
+    (keep, folder)
+}
+
+/// Runs the program, which must end with `code`, and returns its messages.
+fn told(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = hiddenline(folder, arguments);
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    stderr
+}
+
+fn fails(folder: &Path, arguments: &[&str], code: i32, message: &str) {
+    let stderr = told(folder, arguments, code);
+    assert!(stderr.contains(message), "{arguments:?}: {stderr}");
+}
+
+#[test]
+fn no_file_that_is_read_is_replaced() {
+    let (_keep, folder) = with_files();
+    let before = |name: &str| fs::read(folder.join(name)).unwrap();
+    for (arguments, name) in [
+        (&["preview", "cube.obj", "-o", "./cube.obj"][..], "cube.obj"),
+        (&["draw", "cube.obj", "--format", "svg", "-o", "cube.obj"], "cube.obj"),
+        (&["fill", "cube.obj", "--format", "svg", "-o", "cube.mtl"], "cube.mtl"),
+        (
+            &["surface", "--grid", "heights.csv", "--format", "svg", "-o", "heights.csv"],
+            "heights.csv",
+        ),
+        (
+            &["surface", "--points", "points.xyz", "--format", "svg", "-o", "points.xyz"],
+            "points.xyz",
+        ),
+        (&["optimize", "line.svg", "--format", "hpgl", "-o", "line.svg"], "line.svg"),
+    ] {
+        let bytes = before(name);
+        fails(&folder, arguments, 1, "would be replaced");
+        assert!(before(name) == bytes, "{arguments:?}");
+    }
+    told(&folder, &["draw", "cube.obj", "-o", "view.json"], 0);
+    let camera = ["draw", "cube.obj", "--camera", "view.json", "-o", "view.json"];
+    fails(&folder, &camera, 1, "would be replaced");
+    fs::copy(folder.join("cube.obj"), folder.join("turn-002.svg")).unwrap();
+    let model = ["fill", "turn-002.svg", "--input-format", "obj"];
+    let turntable = [&model[..], &["--turntable", "2", "-o", "turn.svg"]].concat();
+    fails(&folder, &turntable, 1, "would be replaced");
+    assert!(!folder.join("turn-001.svg").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_model_is_not_replaced_by_way_of_a_link() {
+    let (_keep, folder) = with_files();
+    std::os::unix::fs::symlink(folder.join("cube.obj"), folder.join("link.svg")).unwrap();
+    fails(&folder, &["draw", "cube.obj", "-o", "link.svg"], 1, "would be replaced");
+    assert_eq!(fs::read_to_string(folder.join("cube.obj")).unwrap(), CUBE);
+}
+
+#[test]
+fn an_svg_can_be_optimized_in_place() {
+    let (_keep, folder) = with_files();
+    told(&folder, &["optimize", "line.svg", "-o", "line.svg"], 0);
+    let svg = fs::read_to_string(folder.join("line.svg")).unwrap();
+    assert!(svg != LINE && svg.contains("M50 50"), "{svg}");
+}
+
+#[test]
+fn a_preview_is_not_written_under_the_name_of_another_format() {
+    let (_keep, folder) = with_files();
+    for name in ["x.jpg", "x.svg", "x"] {
+        fails(&folder, &["preview", "cube.obj", "-o", name], 2, "does not end in .png");
+        assert!(!folder.join(name).exists());
+    }
+    let stderr = told(&folder, &["preview", "cube.obj", "--size", "40", "-o", "x.PNG"], 0);
+    assert!(stderr.contains("x.PNG  40 x 40 pixels"), "{stderr}");
+}
+
+#[test]
+fn a_missing_folder_is_told_without_the_name_of_a_temporary_file() {
+    let (_keep, folder) = with_files();
+    for command in [["draw", "cube.obj"], ["preview", "cube.obj"], ["optimize", "line.svg"]] {
+        let name = if command[0] == "preview" { "no/x.png" } else { "no/x.svg" };
+        let stderr = told(&folder, &[&command[..], &["-o", name]].concat(), 1);
+        assert!(stderr.contains("there is no folder no") && !stderr.contains(".hiddenline"));
+    }
+}
+
+#[test]
+fn negative_numbers_are_values_that_may_be_too_small() {
+    let (_keep, folder) = with_files();
+    for (option, message) in [
+        ("--margin", "must be 0 or more"),
+        ("--crease", "must be 0 or more"),
+        ("--weld", "must be 0 or more"),
+        ("--distance", "must be above 0"),
+        ("--pen-width", "must be above 0"),
+    ] {
+        fails(&folder, &["draw", "cube.obj", option, "-4.5"], 2, message);
+    }
+}
+
+#[test]
+fn unknown_options_are_not_taken_for_files() {
+    let (_keep, folder) = with_files();
+    let unknown = told(&folder, &["draw", "cube.obj", "--quux"], 2);
+    assert!(unknown.contains("--quux") && !unknown.contains("tip"), "{unknown}");
+    for size in ["--width", "--height=500", "--size"] {
+        let stderr = told(&folder, &["draw", "cube.obj", size], 2);
+        assert!(stderr.contains("'--page WIDTHxHEIGHT'"), "{stderr}");
+        assert!(stderr.contains("'--png-width'") && !stderr.contains("'-- "), "{stderr}");
+    }
+    fails(&folder, &["preview", "cube.obj", "--width", "9"], 2, "'--size WIDTHxHEIGHT'");
+    fails(&folder, &["draw", "cube.obj", "--engin", "appel"], 2, "'--engine'");
+}
+
+#[test]
+fn parametric_formulas_do_not_swallow_options() {
+    let (_keep, folder) = with_files();
+    let three = "three formulas are needed";
+    fails(&folder, &["surface", "--parametric", "u", "v", "-o", "x.svg"], 2, three);
+    fails(&folder, &["surface", "--parametric", "u", "v", "--view", "top"], 2, three);
+    told(&folder, &["surface", "--parametric", "u", "-v", "-u*v", "-o", "x.svg"], 0);
+}
+
+#[test]
+fn a_surface_without_values_is_told_with_its_formula_and_range() {
+    let (_keep, folder) = with_files();
+    let nothing = |formula: &str, more: &[&str], messages: &[&str]| {
+        let stderr = told(&folder, &[&["surface", formula], more].concat(), 1);
+        for message in messages {
+            assert!(stderr.contains(message), "{message}: {stderr}");
+        }
+    };
+    nothing("1/0", &[], &["`1/0` has a value at none of 81 × 81", "-5:5", "--x and --y"]);
+    nothing("sqrt(-1-r)", &["--x=0:2"], &["`sqrt(-1-r)`", "x in 0:2 and y in -5:5"]);
+    nothing("x", &["--where", "x>30"], &["--where `x>30` holds at none"]);
+    nothing("1/0", &["--where", "x>30"], &["`1/0` has a value at none"]);
+}
+
+#[test]
+fn a_level_surface_has_no_level_curves() {
+    let (_keep, folder) = with_files();
+    let flat = ["surface", "0", "--samples", "5", "--lines", "levels"];
+    fails(&folder, &flat, 1, "the surface is level, 0 high everywhere");
+    let more = ["surface", "3", "--samples", "5", "--lines", "levels,x", "-o", "x.svg"];
+    fails(&folder, &more, 0, "warning: the surface is level, 3 high everywhere");
+    let away = ["surface", "x", "--samples", "5", "--lines", "levels", "--levels", "7,9"];
+    fails(&folder, &away, 1, "heights from -5 to 5: none of --levels is there");
+}
+
+#[test]
+fn an_empty_drawing_has_no_negative_length() {
+    let (_keep, folder) = with_files();
+    let away = ["draw", "cube.obj", "--eye", "9,0,0", "--target", "20,0,0", "-o", "x.svg"];
+    let stderr = told(&folder, &away, 0);
+    assert!(stderr.contains("visible 0 strokes 0.0 m\n"), "{stderr}");
+}
+
+#[test]
+fn files_of_another_kind_are_told() {
+    let (_keep, folder) = with_files();
+    fails(&folder, &["draw", "heights.csv"], 1, "--input-format");
+    fs::write(folder.join("bytes"), b"\x80\x00\xff").unwrap();
+    for name in ["bytes", "cube.obj"] {
+        let camera = ["draw", "cube.obj", "--camera", name];
+        fails(&folder, &camera, 1, &format!("--camera {name}: this is not a strokes file"));
+    }
+}
+
+#[test]
+fn the_place_of_an_error_in_a_formula_is_marked() {
+    let (_keep, folder) = with_files();
+    let second = ["surface", "x", "y + 2x"];
+    fails(&folder, &second, 2, "in formula 2 of 2, column 6");
+    fails(&folder, &second, 2, "\n  y + 2x\n       ^\n");
+    fails(&folder, &["surface", "z=x^2"], 2, "leave out `z =`\n  z=x^2\n  ^\n");
+    fails(&folder, &["surface", "x", "--x=-2pi:2pi"], 2, "`2*pi`\n  -2pi\n    ^\n");
+    fails(&folder, &["surface", "x", "--where", "x=3"], 2, "\n  x=3\n   ^\n");
+    fails(&folder, &["preview", "--expr", "2x", "-o", "x.png"], 2, "\n  2x\n   ^\n");
+}
+
+#[test]
+fn kinds_of_line_that_are_nearly_right_are_told() {
+    let (_keep, folder) = with_files();
+    for name in ["sillhouette", "Silhouette"] {
+        let lines = ["draw", "cube.obj", "--lines", name];
+        fails(&folder, &lines, 2, "did you mean silhouette?");
+    }
+}
+
+#[test]
+fn the_largest_scale_that_fits_is_told_and_fits() {
+    let (_keep, folder) = with_files();
+    for unit in ["mm", "m"] {
+        let draw = |scale: &str| {
+            let drawing = ["draw", "cube.obj", "--unit", unit, "-o", "x.svg", "--drawing-scale"];
+            told(&folder, &[&drawing[..], &[scale]].concat(), 0)
+        };
+        let stderr = draw("1000:1");
+        let (_, rest) = stderr.split_once("the largest scale that fits is ").unwrap();
+        let fitting = rest.lines().next().unwrap();
+        assert!(!draw(fitting).contains("cut off"), "{fitting}");
+        let (paper, model) = fitting.split_once(':').unwrap();
+        let ratio = paper.parse::<f64>().unwrap() / model.parse::<f64>().unwrap();
+        assert!(draw(&(1.02 * ratio).to_string()).contains("cut off"), "{fitting}");
+    }
+}
+
+#[test]
+fn wrong_names_are_bad_usage() {
+    let (_keep, folder) = with_files();
+    fails(&folder, &["draw", "cube.obj", "--machine", "axidrew"], 2, "did you mean axidraw");
+    fails(&folder, &["draw", "cube.obj", "--preset", "none"], 2, "no preset called `none`");
+    fails(&folder, &["surface", "x", "--samples", "100000"], 2, "are more than 100000000");
+    fails(&folder, &["preview", "cube.obj", "--light", "0,0,0"], 2, "no direction");
+    fails(&folder, &["fill", "cube.obj", "--light", "0,0,0"], 2, "no direction");
+}
+
+#[test]
+fn one_of_a_kind_is_not_many() {
+    let (_keep, folder) = with_files();
+    fs::write(folder.join("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let stderr = told(&folder, &["draw", "one.obj", "--view", "top", "-o", "x.svg"], 0);
+    assert!(stderr.contains("one.obj: 3 vertices, 1 face\n"), "{stderr}");
+    assert!(stderr.contains("visible 1 stroke ") && stderr.contains(" 1 lift,"), "{stderr}");
+}
+
+#[test]
+fn hours_are_told_as_hours() {
+    let (_keep, folder) = with_files();
+    let slow = "[machine.slow.motion]\ndown_speed = 0.1\ndown_acceleration = 200\ncorner = 0.1
+up_speed = 200\nup_acceleration = 400\nraise = 0.1\nlower = 0.1\n";
+    fs::write(folder.join("hiddenline.toml"), slow).unwrap();
+    // 50 mm at 0.1 mm/s and as much again are a quarter of an hour.
+    let stderr = told(&folder, &["optimize", "line.svg", "--machine", "slow", "-o", "x.svg"], 0);
+    assert!(stderr.contains("about 8.3 min"), "{stderr}");
+    let stderr = told(&folder, &["draw", "cube.obj", "--machine", "slow", "-o", "x.svg"], 0);
+    let (_, time) = stderr.split_once("about ").unwrap();
+    let (hours, rest) = time.split_once(" h ").unwrap();
+    let (minutes, _) = rest.split_once(" min").unwrap();
+    let meters = stderr.split_once(" strokes ").unwrap().1.split_once(" m").unwrap().0;
+    let told = 60.0 * hours.parse::<f64>().unwrap() + minutes.parse::<f64>().unwrap();
+    let expected = meters.parse::<f64>().unwrap() * 10_000.0 / 60.0;
+    assert!((told / expected - 1.0).abs() < 0.1, "{stderr}");
+}
+
+#[test]
+fn options_without_effect_are_warned_of() {
+    let (_keep, folder) = with_files();
+    let drawn =
+        |more: &[&str]| told(&folder, &[&["draw", "cube.obj", "-o", "x.svg"], more].concat(), 0);
+    for (more, message) in [
+        (&["--dash", "1,1"][..], "--dash has no effect"),
+        (&["--dash=1,1", "--hidden", "solid"], "--dash has no effect"),
+        (&["--pen", "hidden=2"], "--pen for hidden lines has no effect"),
+        (&["--hidden-levels", "2", "--hidden", "none"], "--hidden-levels has no effect"),
+        (&["--dpi", "100"], "--dpi has no effect on svg"),
+    ] {
+        let stderr = drawn(more);
+        assert!(stderr.contains(&format!("warning: {message}")), "{more:?}: {stderr}");
+    }
+    for more in [
+        &["--dash", "1,1", "--hidden", "dashed", "--pen", "hidden=2"][..],
+        &["--hidden-levels", "2", "--dash", "1,1"],
+        &["--dpi", "100", "--format", "png"],
+    ] {
+        let stderr = drawn(more);
+        assert!(!stderr.contains("warning"), "{more:?}: {stderr}");
+    }
+    // Settings for all drawings need not have an effect on each.
+    fs::write(folder.join("hiddenline.toml"), "[defaults]\ndash = '1,1'\ndpi = 100\n").unwrap();
+    let stderr = drawn(&[]);
+    assert!(!stderr.contains("warning"), "{stderr}");
+}
+
+#[test]
+fn filling_tells_of_pens_only_where_there_are_lines_and_of_formats_that_it_has() {
+    let (_keep, folder) = with_files();
+    let areas = told(&folder, &["fill", "cube.obj", "--no-edges", "-o", "x.svg"], 0);
+    assert!(areas.contains("fills 3 areas\n") && !areas.contains("pen-up"), "{areas}");
+    let edged = told(&folder, &["fill", "cube.obj", "-o", "x.svg"], 0);
+    assert!(edged.contains("pen-up"), "{edged}");
+    let turned = told(&folder, &["fill", "cube.obj", "--turntable", "3", "-o", "x.svg"], 0);
+    assert!(turned.lines().all(|line| !line.is_empty()), "{turned}");
+    let help = String::from_utf8(hiddenline(&folder, &["fill", "--help"]).stdout).unwrap();
+    assert!(help.contains(".svg; .pdf; .png") && !help.contains("hpgl, gcode"), "{help}");
+    assert!(!help.contains(".gcode"), "{help}");
+}
+
+#[test]
+fn letters_that_the_font_does_not_have_are_warned_of_once() {
+    let (_keep, folder) = with_files();
+    let titled = |title: &str| {
+        let surface = ["surface", "x", "--samples", "5", "-o", "x.svg", "--title", title];
+        told(&folder, &surface, 0)
+    };
+    assert!(!titled("Grüße: 3 m² ± 2°").contains("warning"));
+    let stderr = titled("日本日");
+    assert!(stderr.contains("warning: the font has no `日`, `本`: "), "{stderr}");
+}
+
+#[test]
+fn the_help_lists_kinds_of_line_one_a_line() {
+    let (_keep, folder) = with_files();
+    let help = String::from_utf8(hiddenline(&folder, &["draw", "--help"]).stdout).unwrap();
+    for kind in ["silhouette", "crease", "boundary", "nonmanifold", "intersection", "outline"] {
+        assert!(help.lines().any(|line| line.trim_start().starts_with(&format!("{kind}  "))));
+    }
+}

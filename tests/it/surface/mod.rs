@@ -1,9 +1,0 @@
-//! Function surfaces: engines against brute force and closed forms, and the program.
-
-mod brute;
-mod floating_horizon;
-mod max_min;
-mod meshed;
-mod pen_path;
-mod program;
-mod tin;
