@@ -73,6 +73,7 @@ pub mod page;
 
 pub mod optimize;
 
+#[cfg(feature = "svg-in")]
 pub mod read_svg;
 
 pub mod write;

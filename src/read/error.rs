@@ -126,6 +126,9 @@ pub enum Fault {
         /// How the model can be had otherwise.
         remedy: &'static str,
     },
+    /// The format is left out of this build.
+    #[error(transparent)]
+    FeatureOff(#[from] FeatureOff),
     /// What a parsing library says.
     #[error("{0}; correct the file or export the model again")]
     Parser(String),
@@ -154,6 +157,16 @@ fn missing_vertex(index: &str, vertices: usize) -> String {
         _ => format!("there are only {vertices} vertices"),
     };
     format!("a face uses vertex {index}, but {there_are}; correct it or export the model again")
+}
+
+/// A format that this build leaves out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("this build cannot read {format}; build it with the feature `{feature}`")]
+pub struct FeatureOff {
+    /// The format's usual name.
+    pub format: &'static str,
+    /// The feature of this crate that brings it.
+    pub feature: &'static str,
 }
 
 /// A fault and its line, before the name of the file is put to it.

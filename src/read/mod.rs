@@ -18,6 +18,7 @@ mod materials;
 mod obj;
 mod obj_filter;
 mod off;
+#[cfg(feature = "ply")]
 mod ply;
 mod stl;
 mod text;
@@ -26,7 +27,7 @@ mod warning;
 use std::io::Read;
 use std::path::Path;
 
-pub use error::{Fault, ReadError};
+pub use error::{Fault, FeatureOff, ReadError};
 pub use materials::{MaterialColors, material_colors, material_files};
 pub use warning::{Notice, Warning};
 
@@ -171,7 +172,10 @@ fn read_draft(
     let draft = match format {
         ModelFormat::Obj => obj::read(&text::decode(bytes)),
         ModelFormat::Stl => stl::read(bytes),
+        #[cfg(feature = "ply")]
         ModelFormat::Ply => ply::read(bytes),
+        #[cfg(not(feature = "ply"))]
+        ModelFormat::Ply => Err(Fault::from(FeatureOff { format: "PLY", feature: "ply" }).into()),
         ModelFormat::Off => off::read(&text::decode(bytes)),
     }?;
     let vertices = draft.soup.positions.len() + draft.unused_vertices;

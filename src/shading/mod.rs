@@ -4,4 +4,5 @@ pub mod light;
 
 pub mod fill;
 
+#[cfg(feature = "png")]
 pub mod preview;

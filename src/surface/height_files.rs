@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::csv::{CsvError, Placement, read_csv};
 use super::grid::{Grid, GridError, MAX_SAMPLES, evenly};
+use crate::read::FeatureOff;
 
 /// Why a file gives no grid of heights.
 #[derive(Debug, Error)]
@@ -24,11 +25,16 @@ pub enum HeightFileError {
     #[error("NPY: {0}")]
     Npy(&'static str),
     /// A PNG that cannot be decoded.
+    #[cfg(feature = "png")]
     #[error("PNG: {0}")]
     Png(#[from] png::DecodingError),
     /// A TIFF that cannot be decoded.
+    #[cfg(feature = "tiff")]
     #[error("TIFF: {0}")]
     Tiff(#[from] tiff::TiffError),
+    /// The format is left out of this build.
+    #[error(transparent)]
+    FeatureOff(#[from] FeatureOff),
     /// A picture without one channel of gray.
     #[error("a height map must be a gray picture; this one has colors")]
     Colors,
@@ -226,6 +232,12 @@ fn numbers<const N: usize>(
     Some(data.chunks_exact(N).map(read).collect())
 }
 
+#[cfg(not(feature = "png"))]
+fn read_png(_: &[u8]) -> Result<Heights, HeightFileError> {
+    Err(FeatureOff { format: "PNG", feature: "png" }.into())
+}
+
+#[cfg(feature = "png")]
 fn read_png(bytes: &[u8]) -> Result<Heights, HeightFileError> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND);
@@ -253,6 +265,12 @@ fn read_png(bytes: &[u8]) -> Result<Heights, HeightFileError> {
     Ok(heights)
 }
 
+#[cfg(not(feature = "tiff"))]
+fn read_tiff(_: &[u8]) -> Result<Heights, HeightFileError> {
+    Err(FeatureOff { format: "TIFF", feature: "tiff" }.into())
+}
+
+#[cfg(feature = "tiff")]
 fn read_tiff(bytes: &[u8]) -> Result<Heights, HeightFileError> {
     use tiff::decoder::{Decoder, DecodingResult};
     let mut decoder = Decoder::new(std::io::Cursor::new(bytes))?;
@@ -282,4 +300,22 @@ fn read_tiff(bytes: &[u8]) -> Result<Heights, HeightFileError> {
     let mut heights = Heights { columns, rows, values, extent: None };
     heights.flip();
     Ok(heights)
+}
+
+#[cfg(all(test, not(any(feature = "ply", feature = "png", feature = "tiff"))))]
+mod tests {
+    use super::*;
+    use crate::read::{Fault, read_bytes};
+
+    #[test]
+    fn a_format_left_out_of_the_build_is_refused_by_its_feature() {
+        let error = read_bytes("a.ply", b"ply\nformat ascii 1.0\n", None).unwrap_err();
+        assert!(matches!(error.fault, Fault::FeatureOff(off) if off.feature == "ply"));
+        let message = "a.ply: this build cannot read PLY; build it with the feature `ply`";
+        assert_eq!(error.to_string(), message);
+        for (bytes, feature) in [(&b"\x89PNG\r\n"[..], "png"), (b"II*\0", "tiff")] {
+            let error = read_heights(bytes, Placement::default()).unwrap_err();
+            assert!(matches!(error, HeightFileError::FeatureOff(off) if off.feature == feature));
+        }
+    }
 }

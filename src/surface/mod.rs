@@ -8,6 +8,7 @@ mod grid;
 mod height_files;
 mod levels;
 mod lined_mesh;
+#[cfg(feature = "points")]
 mod points;
 
 pub use csv::{CsvError, Placement, read_csv};
@@ -15,4 +16,5 @@ pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
 pub use height_files::{HeightFileError, read_heights};
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
+#[cfg(feature = "points")]
 pub use points::{PointsError, delaunay, read_points};

@@ -1,12 +1,18 @@
 //! Files: one writer a format, each a function of a finished page and a stream.
 
+#[cfg(feature = "plotters")]
 mod clip;
 mod decimal;
 pub mod dxf;
+#[cfg(feature = "plotters")]
 pub mod gcode;
+#[cfg(feature = "plotters")]
 pub mod hpgl;
+#[cfg(feature = "json")]
 pub mod json;
+#[cfg(feature = "pdf")]
 pub mod pdf;
+#[cfg(feature = "png")]
 pub mod png;
 pub mod svg;
 
