@@ -82,6 +82,22 @@ impl TrimmedGrid {
         self.rim.values().copied()
     }
 
+    /// Closes the gap that rounding leaves where two sheets end at the same rim: wherever both have a
+    /// rim point at the same x and y, at heights within `tolerance` of each other, both take the mean
+    /// height. Returns how many such points differed. `tolerance` is a height in model units.
+    pub fn meet_at_rim(&mut self, other: &mut Self, tolerance: f64) -> usize {
+        let mut n_moved = 0;
+        for (edge, p) in &mut self.rim {
+            let Some(q) = other.rim.get_mut(edge) else { continue };
+            if p.truncate() == q.truncate() && p.z != q.z && (p.z - q.z).abs() <= tolerance {
+                p.z = 0.5 * p.z + 0.5 * q.z;
+                q.z = p.z;
+                n_moved += 1;
+            }
+        }
+        n_moved
+    }
+
     /// Multiplies all heights.
     pub fn scale_heights(&mut self, factor: f64) {
         self.grid.scale_heights(factor);

@@ -158,6 +158,12 @@ impl PlanSight {
         sign(&dot(&cross(&a, &b), &p)).reverse()
     }
 
+    /// Whether `q` is above (`Greater`), level with or below `p`. Both are at the same u.
+    pub(super) fn rise(&self, p: DVec3, q: DVec3) -> Ordering {
+        let [p, q] = self.exact([p, q]);
+        sign(&(&q[2] * &p[1] - &p[2] * &q[1]))
+    }
+
     /// Whether the first line is above (`Greater`), on or below the second at a place.
     pub(super) fn line_over_line(
         &self,

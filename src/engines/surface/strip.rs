@@ -10,7 +10,7 @@ use super::horizon::{Break, Horizon, Kind, Stop};
 use super::pieces::{HIDDEN, LOWER, SurfaceSide, UPPER, VisiblePiece};
 use super::plan_predicates::PlaceOnU;
 use super::segment::{
-    Cell, End, HorizonPlane, HorizonSegment, HorizonVertex, PLACE_PRECISION, Samples,
+    Cell, End, HorizonPlane, HorizonSegment, HorizonVertex, PLACE_PRECISION, Samples, filtered,
 };
 
 /// A strip of one part of the domain, from one u to another. Strips never hide each other.
@@ -240,6 +240,20 @@ impl<'a, S: Samples> HorizonStrip<'a, S> {
         }
     }
 
+    /// Whether a radial edge rises (`Greater`) or falls (`Less`) away from the eye in the plane of
+    /// horizons. `None` when its near end is right above or below the eye.
+    fn rise(&self, near: u32, far: u32) -> Option<Ordering> {
+        let plane = &self.plane;
+        let [_, near_depth, _] = plane.sight.rounded(plane.point(near));
+        if near_depth <= 0.0 {
+            return None;
+        }
+        let (from, to) = (plane.vertex(near), plane.vertex(far));
+        let error = plane.v_error(from.v) + plane.v_error(to.v);
+        let rounded = filtered(to.v - from.v, error);
+        Some(rounded.unwrap_or_else(|| plane.sight.rise(plane.point(near), plane.point(far))))
+    }
+
     /// Records what is visible of a radial edge, whose ends are at the same u, as seen from the cell
     /// on one side of it. `t_foot` is set when the edge's near end lies behind the eye's foot.
     pub(super) fn draw_radial(
@@ -260,10 +274,17 @@ impl<'a, S: Samples> HorizonStrip<'a, S> {
         if !inside {
             return;
         }
-        for (horizon, side) in
-            [(&mut self.upper, SurfaceSide::Upper), (&mut self.lower, SurfaceSide::Lower)]
-        {
+        // The surface right beside the edge's near part hides the rest of it from one of its sides.
+        let rise = if t_foot.is_none() { self.rise(near, far) } else { None };
+        let horizons = [
+            (&mut self.upper, SurfaceSide::Upper, Ordering::Less),
+            (&mut self.lower, SurfaceSide::Lower, Ordering::Greater),
+        ];
+        for (horizon, side, hidden) in horizons {
             let Some(horizon) = horizon else { continue };
+            if rise == Some(hidden) {
+                continue;
+            }
             let Some((from, to)) = horizon.radial(&self.plane, near, far, right_side) else {
                 continue;
             };

@@ -1,20 +1,33 @@
-//! Max-Min patches over a triangulation: any surface z = f(x, y) made of triangles whose domain is
-//! convex, such as scattered points, a grid with level curves, or a formula over a disk.
+//! Max-Min patches over a triangulation: any surface z = f(x, y) made of triangles over a convex
+//! domain, such as scattered points, a grid with level curves, or a formula over a disk; also two
+//! such surfaces that meet along the border, such as a sphere.
 //!
 //! ```text
-//!       ╱╲ 3 ╱╲       triangles from the eye outwards: of two that share an edge, the one on the
-//!      ╱ 2╲ ╱ 4╲      eye's side of it comes first, in plan. Each tests its far edges, which then
-//!      ╲  ╱╲  ╱       hide; near edges were the far ones of the triangle before, except on the
-//!       ╲╱ 1╲╱        border of the domain
+//!       ╱╲ 3 ╱╲       Front to back: of two triangles that share an edge, the one on the eye's
+//!      ╱ 2╲ ╱ 4╲      side of it in plan comes first. Each triangle tests its far edges, which
+//!      ╲  ╱╲  ╱       then hide. Its near edges were far edges of earlier triangles, except on
+//!       ╲╱ 1╲╱        the border of the domain.
 //!         ●           the eye's foot
 //! ```
 //!
-//! All else is as in [`max_min`](super::max_min): parts around the eye, strips, horizons, edges in
-//! the vertical plane of the eye. That there is such an order is known for Delaunay triangulations
-//! (L. De Floriani, B. Falcidieno, G. Nagy and C. Pienovi, "On sorting triangles in a Delaunay
-//! tessellation", Algorithmica 6, 1991); it is found here for each view, and where triangles come
-//! before each other in turn, or where the domain has holes or bays through which one may look,
-//! there is no answer and a mesh engine has to draw. O(triangles + crossings).
+//! Parts around the eye, strips, horizons and radial edges work as in [`max_min`](super::max_min).
+//! Delaunay triangulations can always be ordered this way (L. De Floriani, B. Falcidieno, G. Nagy
+//! and C. Pienovi, "On sorting triangles in a Delaunay tessellation", Algorithmica 6, 1991); others
+//! are tried for each view. When triangles form a cycle, or when the domain has holes or bays to look
+//! through, the engine declines and a mesh engine draws. O(triangles + crossings).
+//!
+//! # Two sheets
+//!
+//! Source: Vega-Páez, Ortega and Pulido 2008, section 6.2, the sphere. Two sheets that meet along the
+//! whole border share their horizons. In a vertical plane through the eye both sheets start at the
+//! same border point, so all that is nearer than a point still covers one interval of heights. The
+//! upper sheet alone is its maximum and the lower sheet alone its minimum. So the upper sheet is
+//! tested against the upper horizon and the lower sheet against the lower one, each front to back;
+//! the shared border is visible where either says so. When the eye is above or below the domain it
+//! sees one sheet only. When it is between the sheets, the engine declines.
+//!
+//! Coherence: object coherence (the order in plan settles depth once for each view), and edge
+//! coherence (a horizon is changed next to its last change).
 
 use std::cmp::Ordering;
 use std::sync::atomic::AtomicU8;
@@ -34,93 +47,45 @@ use crate::engines::visibility::{Span, Visibility};
 use crate::model::scene::Scene;
 use crate::predicates::{Sign, orient2d};
 
-/// A part is split into strips of about this many triangles.
+mod sheets;
+
+use self::sheets::{Sheets, is_border};
+
+/// About how many triangles of a part one strip takes.
 const TRIANGLES_PER_STRIP: usize = 60_000;
 
-/// Finds the visible parts of the drawn edges; hidden parts count as hidden once.
+/// Finds the visible parts of the drawn edges. Hidden parts get quantitative invisibility 1.
 ///
-/// `None` when the scene is no function over a convex domain, when triangles hide each other in
-/// turn, when the eye is on the surface, or when the near plane cuts a triangle.
+/// `None` when the scene is neither a function over a convex domain nor two that meet along its
+/// border, when triangles hide each other in a cycle, when the eye is on the surface or between two
+/// sheets, or when the near plane cuts a triangle.
 pub fn solve(view: &ViewedScene) -> Option<(Visibility, HorizonCounts)> {
     solve_in_strips(view, TRIANGLES_PER_STRIP)
 }
 
-/// As [`solve`], with strips of about `triangles_per_strip` triangles; the same up to the rounding of
-/// where pieces end.
+/// Like [`solve`], with strips of about `triangles_per_strip` triangles. The result is the same up to
+/// the rounding of where pieces end.
 pub fn solve_in_strips(
     view: &ViewedScene,
     triangles_per_strip: usize,
 ) -> Option<(Visibility, HorizonCounts)> {
     let scene = view.scene();
-    if !is_function_over_convex_domain(scene) || !is_clear_of_near_plane(view) {
+    let sheets = Sheets::of(scene)?;
+    if !is_clear_of_near_plane(view) {
         return None;
     }
     let camera = view.camera();
-    let n_edges = scene.topology().edges().len();
     let forward = camera.forward();
     let is_perspective = matches!(camera.projection(), Projection::Perspective { .. });
     let pieces = if !is_perspective && forward.x == 0.0 && forward.y == 0.0 {
+        let n_edges = scene.topology().edges().len() as u32;
         let seen = if forward.z < 0.0 { UPPER } else { LOWER };
-        GridPieces::join(0, 0, vec![seen; n_edges], Vec::new())
+        let status = |edge| if sheets.faces_up_or_down(scene, edge, seen) { seen } else { HIDDEN };
+        GridPieces::join(0, 0, (0..n_edges).map(status).collect(), Vec::new())
     } else {
-        sweep(&Tin::new(scene, camera)?, triangles_per_strip)?
+        sweep(&Tin::new(scene, camera)?, &sheets, triangles_per_strip)?
     };
     Some((visibility(view, &pieces), pieces.work))
-}
-
-/// Whether all triangles turn one way in plan, side by side, and together cover a convex region.
-fn is_function_over_convex_domain(scene: &Scene) -> bool {
-    let (triangles, topology) = (scene.triangles(), scene.topology());
-    let positions = scene.mesh().positions();
-    let turn = |a: u32, b: u32, c: u32| {
-        let [a, b, c] = [a, b, c].map(|v| positions[v as usize].truncate());
-        orient2d(a, b, c)
-    };
-    let is_one_to_one = triangles.len() == scene.mesh().n_faces();
-    let is_upward = |&[a, b, c]: &[u32; 3]| turn(a, b, c) == Sign::Positive;
-    if triangles.is_empty() || !is_one_to_one || !triangles.par_iter().all(is_upward) {
-        return false;
-    }
-    // The border, from each vertex on it to the next.
-    let mut next = vec![u32::MAX; positions.len()];
-    let mut n_border = 0;
-    let mut start = 0;
-    for (edge, &[low, high]) in (0..).zip(topology.edges()) {
-        match topology.uses(edge) {
-            [only] => {
-                let (from, to) = if only.runs_upwards() { (low, high) } else { (high, low) };
-                if std::mem::replace(&mut next[from as usize], to) != u32::MAX {
-                    return false;
-                }
-                (n_border, start) = (n_border + 1, from);
-            }
-            [one, other] if one.runs_upwards() != other.runs_upwards() => {}
-            _ => return false,
-        }
-    }
-    // One loop that always turns left and goes round once bounds a convex region; a disk whose
-    // triangles all turn one way then covers it once (Euler: a disk has characteristic 1).
-    let is_upper = |a: u32, b: u32| {
-        let (a, b) = (positions[a as usize], positions[b as usize]);
-        b.y > a.y || b.y == a.y && b.x > a.x
-    };
-    let mut at = start;
-    let mut n_rises = 0;
-    for k in 0..n_border {
-        let middle = next[at as usize];
-        let Some(&after) = next.get(middle as usize).filter(|&&v| v != u32::MAX) else {
-            return false;
-        };
-        if turn(at, middle, after) == Sign::Negative || (middle == start) != (k + 1 == n_border) {
-            return false;
-        }
-        n_rises += usize::from(!is_upper(at, middle) && is_upper(middle, after));
-        at = middle;
-    }
-    let mut is_used = vec![false; positions.len()];
-    triangles.iter().flatten().for_each(|&v| is_used[v as usize] = true);
-    let n_vertices = is_used.iter().filter(|&&is_used| is_used).count();
-    n_rises == 1 && n_vertices + triangles.len() == topology.edges().len() + 1
 }
 
 /// Whether every triangle is beyond the near plane, or wholly behind the eye, where it hides nothing.
@@ -210,33 +175,46 @@ impl<'a> Tin<'a> {
         Some(Self { scene, sides, order, camera: *camera, centre, size, is_perspective })
     }
 
-    /// Which horizons there are, (upper, lower), as the eye stands over the domain or beside it;
-    /// `None` with the eye on the surface.
-    fn horizons(&self) -> Option<(bool, bool)> {
-        let holds_eye = |sides: &&[(u32, Facing); 3]| {
+    /// Which horizons each sheet is tested against, (upper, lower). `None` with the eye on the surface
+    /// or between two sheets.
+    fn horizons(&self, sheets: &Sheets) -> Option<[(bool, bool); 2]> {
+        let holds_eye = |sides: &[(u32, Facing); 3]| {
             self.is_perspective && sides.iter().all(|(_, facing)| *facing != Facing::Near)
         };
-        let Some(triangle) = self.sides.iter().position(|sides| holds_eye(&sides)) else {
-            return Some((true, true));
+        let over = |sheet: usize| {
+            let mut triangles = (0..).zip(&self.sides);
+            let own = |triangle: u32| sheets.sheet(triangle) == sheet;
+            let (triangle, _) = triangles.find(|&(t, sides)| own(t) && holds_eye(sides))?;
+            let [a, b, c] = self.scene.triangles()[triangle as usize].map(|v| self.point(v));
+            Some(over_plane(self.camera.eye(), a, b, c))
         };
-        let [a, b, c] = self.scene.triangles()[triangle].map(|v| self.point(v));
-        match over_plane(self.camera.eye(), a, b, c) {
-            Ordering::Greater => Some((true, false)),
-            Ordering::Less => Some((false, true)),
-            Ordering::Equal => None,
+        let is_two = sheets.n() == 2;
+        let (upper, lower) = (over(0), if is_two { over(1) } else { None });
+        match (upper, lower) {
+            (None, None) if is_two => Some([(true, false), (false, true)]),
+            (None, None) => Some([(true, true); 2]),
+            (Some(Ordering::Greater), None | Some(Ordering::Greater)) => {
+                Some([(true, false), (false, false)])
+            }
+            (Some(Ordering::Less), None) => Some([(false, true); 2]),
+            (Some(Ordering::Less), Some(Ordering::Less)) => Some([(false, false), (false, true)]),
+            _ => None,
         }
     }
 
     fn is_border(&self, edge: u32) -> bool {
-        self.scene.topology().uses(edge).len() == 1
+        is_border(self.scene, edge)
     }
 }
 
-/// The triangles such that of two with a common edge the one on the eye's side comes first; `None`
-/// when there is no such order. The last that became free comes next, so neighbors follow each other.
+/// The triangles front to back: of two that share an edge inside a sheet, the one on the eye's side
+/// comes first. `None` when there is no such order. Depth first, so that neighbors follow each other.
 fn outwards(scene: &Scene, sides: &[[(u32, Facing); 3]]) -> Option<Vec<u32>> {
     let topology = scene.topology();
     let neighbor = |triangle: usize, edge: u32| {
+        if is_border(scene, edge) {
+            return None;
+        }
         topology.uses(edge).iter().map(|used| used.face()).find(|&face| face as usize != triangle)
     };
     let mut n_before: Vec<u8> = Vec::with_capacity(sides.len());
@@ -278,8 +256,8 @@ struct TinPart {
     vertices: Vec<HorizonVertex>,
 }
 
-fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
-    let horizons = tin.horizons()?;
+fn sweep(tin: &Tin, sheets: &Sheets, triangles_per_strip: usize) -> Option<GridPieces> {
+    let horizons = tin.horizons(sheets)?;
     let n_edges = tin.scene.topology().edges().len();
     let status: Vec<AtomicU8> = (0..n_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
     let reflections = if tin.is_perspective {
@@ -295,31 +273,38 @@ fn sweep(tin: &Tin, triangles_per_strip: usize) -> Option<GridPieces> {
         let n_vertices = tin.scene.mesh().positions().len() as u32;
         let vertices = (0..n_vertices).into_par_iter().map(|v| plane.vertex(v)).collect();
         let part = TinPart { sight, vertices };
-        let ranges: Vec<Option<(f64, f64)>> =
-            tin.order.par_iter().map(|&triangle| part.range(tin, triangle)).collect();
-        let middles = ranges.iter().flatten().map(|(from, to)| from + (to - from) / 2.0);
-        let n_triangles = ranges.iter().flatten().count();
-        let strips =
-            strips(middles.collect(), n_triangles / triangles_per_strip.max(1), &sight, tin.size);
-        let margin = 4.0 * plane.du;
-        let found: Vec<_> = strips
-            .par_iter()
-            .with_max_len(1)
-            .map(|&(from, to)| {
-                let plane = HorizonPlane::new(tin, sight, tin.size);
-                let mut strip = HorizonStrip::new(plane, (from, to), horizons, &status);
-                for (&triangle, range) in tin.order.iter().zip(&ranges) {
-                    if range.is_some_and(|range| range.0 <= to + margin && range.1 >= from - margin)
-                    {
-                        part.visit(tin, triangle, &mut strip);
+        for (sheet, horizons) in horizons.into_iter().enumerate().take(sheets.n()) {
+            if horizons == (false, false) {
+                continue;
+            }
+            let order: Vec<u32> =
+                tin.order.iter().copied().filter(|&t| sheets.sheet(t) == sheet).collect();
+            let ranges: Vec<Option<(f64, f64)>> =
+                order.par_iter().map(|&triangle| part.range(tin, triangle)).collect();
+            let middles = ranges.iter().flatten().map(|(from, to)| from + (to - from) / 2.0);
+            let n_strips = ranges.iter().flatten().count() / triangles_per_strip.max(1);
+            let strips = strips(middles.collect(), n_strips, &sight, tin.size);
+            let margin = 4.0 * plane.du;
+            let found: Vec<_> = strips
+                .par_iter()
+                .with_max_len(1)
+                .map(|&(from, to)| {
+                    let plane = HorizonPlane::new(tin, sight, tin.size);
+                    let mut strip = HorizonStrip::new(plane, (from, to), horizons, &status);
+                    let meets =
+                        |range: &(f64, f64)| range.0 <= to + margin && range.1 >= from - margin;
+                    for (&triangle, range) in order.iter().zip(&ranges) {
+                        if range.as_ref().is_some_and(meets) {
+                            part.visit(tin, triangle, &mut strip);
+                        }
                     }
-                }
-                (strip.work(), strip.found)
-            })
-            .collect();
-        for (strip_work, found) in found {
-            work += strip_work;
-            pieces.extend(found);
+                    (strip.work(), strip.found)
+                })
+                .collect();
+            for (strip_work, found) in found {
+                work += strip_work;
+                pieces.extend(found);
+            }
         }
     }
     let status = status.into_iter().map(AtomicU8::into_inner).collect();

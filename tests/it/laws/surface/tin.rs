@@ -169,6 +169,153 @@ fn a_disk_is_drawn_by_horizons() {
     }
 }
 
+/// Two sheets over the same triangles that meet along the border: a grid of `n` × `n` cells with its
+/// corners cut off, so that every inner edge has an inner end.
+fn lens(dice: &mut Dice, kind: u64, n: i64) -> LinedScene {
+    let is_cut = |i: i64, j: i64| (i == 0 || i == n) && (j == 0 || j == n);
+    let is_rim = |i: i64, j: i64| i == 0 || i == n || j == 0 || j == n;
+    let mut sheets: [Vec<DVec3>; 2] = Default::default();
+    for k in 0..(n + 1) * (n + 1) {
+        let (i, j) = (k % (n + 1), k / (n + 1));
+        let middle = match kind {
+            0 => 0.0,
+            1 => (i + 2 * j) as f64,
+            _ => dice.roll(9) as f64,
+        };
+        let mut half = || if is_rim(i, j) { 0.0 } else { [1.0, 3.0, 0.5][dice.roll(3) as usize] };
+        let at = |z: f64| dvec3(2.0 * i as f64, 2.0 * j as f64, z);
+        sheets[0].push(at(middle + half()));
+        sheets[1].push(at(middle - half()));
+    }
+    let id = |i: i64, j: i64| (j * (n + 1) + i) as u32;
+    let mut triangles = Vec::new();
+    for (i, j) in (0..n).flat_map(|j| (0..n).map(move |i| (i, j))) {
+        let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+        match corners.iter().position(|&(i, j)| is_cut(i, j)) {
+            Some(k) => {
+                let [a, b, c] = [1, 2, 3].map(|step| corners[(k + step) % 4]);
+                triangles.push([a, b, c].map(|(i, j)| id(i, j)));
+            }
+            None => {
+                let [a, b, c, d] = corners.map(|(i, j)| id(i, j));
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    let mut mesh = LinedMesh::default();
+    sheets.iter().for_each(|points| mesh.push_triangles(points, &triangles, true));
+    mesh.into_scene().expect("a scene")
+}
+
+#[test]
+fn two_sheets_that_meet_along_the_border_equal_all_pairs_from_all_nine_regions() {
+    let mut dice = Dice(15);
+    let mut drawn = [0; 2];
+    for round in 0..270 {
+        let (kind, region) = (round % 3, round / 3 % 9);
+        let n = 3 + dice.roll(2) as i64;
+        let surface = lens(&mut dice, kind, n);
+        let size = 2.0 * n as f64;
+        let range: Vec<f64> = (0..=n).map(|k| 2.0 * k as f64).collect();
+        let eye = dvec3(
+            coordinate(&mut dice, region % 3, &range),
+            coordinate(&mut dice, region / 3, &range),
+            (dice.roll(160) as f64 - 80.0) / 4.0,
+        );
+        let target = if region == 4 {
+            eye - eye.z.signum() * DVec3::Z
+        } else {
+            dvec3(size, size, 0.0) / 2.0
+        };
+        if target == eye {
+            continue;
+        }
+        let camera = camera(eye, target, PERSPECTIVE);
+        drawn[usize::from(region == 4)] +=
+            u32::from(check(&surface, &camera, &format!("round {round}")));
+    }
+    assert!(drawn[0] > 150 && drawn[1] > 12, "only {drawn:?} scenes were drawn by horizons");
+}
+
+#[test]
+fn two_sheets_equal_all_pairs_in_orthographic_projection() {
+    let mut dice = Dice(16);
+    for round in 0..120 {
+        let n = 3 + dice.roll(2) as i64;
+        let surface = lens(&mut dice, round % 3, n);
+        let step = |dice: &mut Dice| dice.roll(7) as f64 - 3.0;
+        let mut forward = dvec3(step(&mut dice), step(&mut dice), step(&mut dice));
+        if round % 20 == 0 {
+            forward = if round % 40 == 0 { DVec3::Z } else { -DVec3::Z };
+        }
+        if forward == DVec3::ZERO {
+            continue;
+        }
+        let camera = camera(DVec3::ZERO, forward, Projection::Orthographic);
+        assert!(check(&surface, &camera, &format!("round {round}")), "round {round}: not drawn");
+    }
+}
+
+#[test]
+fn a_ball_of_two_sheets_is_drawn_by_horizons() {
+    let formula = |text| Formula::parse(text, Variables::Plane).expect("a formula");
+    let disk = formula("1");
+    let sheets = ["sqrt(1-x^2-y^2)", "-sqrt(1-x^2-y^2)"].map(|text| {
+        let (x, n) = ((-1.1, 1.1), (12, 12));
+        TrimmedGrid::sample(&formula(text), &disk, x, x, n).expect("a grid")
+    });
+    let [mut upper, mut lower] = sheets;
+    assert!(upper.meet_at_rim(&mut lower, 1e-6) > 12);
+    let mut mesh = LinedMesh::default();
+    mesh.push_trimmed(&upper, &ALL);
+    mesh.push_trimmed(&lower, &ALL);
+    let surface = mesh.into_scene().expect("a scene");
+    for eye in [dvec3(4.0, -3.0, 2.0), dvec3(-0.3, 5.0, 0.5), dvec3(0.2, 0.1, -6.0)] {
+        let camera = camera(eye, DVec3::ZERO, PERSPECTIVE);
+        assert!(check(&surface, &camera, "ball"), "{eye}");
+    }
+}
+
+#[test]
+fn sheets_that_cross_or_leave_a_gap_are_left_to_mesh_engines() {
+    let camera = camera(dvec3(30.0, -22.0, 16.0), DVec3::ZERO, PERSPECTIVE);
+    let heights = |inner: [f64; 2], rim: f64| {
+        let ring = [(4.0, 0.0), (0.0, 4.0), (-4.0, 0.0), (0.0, -4.0)];
+        let triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mut mesh = LinedMesh::default();
+        for (z, rim) in [(inner[0], 0.0), (inner[1], rim)] {
+            let mut points: Vec<DVec3> = ring.iter().map(|&(x, y)| dvec3(x, y, rim)).collect();
+            points.push(dvec3(0.0, 0.0, z));
+            mesh.push_triangles(&points, &triangles, true);
+        }
+        mesh.into_scene().expect("a scene")
+    };
+    let is_drawn = |surface: &LinedScene| check(surface, &camera, "roof");
+    assert!(is_drawn(&heights([2.0, -1.0], 0.0)) && is_drawn(&heights([-1.0, 2.0], 0.0)));
+    assert!(is_drawn(&heights([5.0, 2.0], 0.0)), "both above the rim");
+    assert!(!is_drawn(&heights([2.0, -1.0], -0.5)), "a gap along the rim");
+    assert!(!is_drawn(&heights([2.0, -1.0], 0.5)), "crossing near the rim");
+    // The same with a second ring on which the sheets change places.
+    let mut dice = Dice(17);
+    let crossing = {
+        let surface = lens(&mut dice, 0, 3);
+        let mut points = surface.scene.mesh().positions().to_vec();
+        let top = (0..points.len()).find(|&k| points[k].z > 0.0).expect("an inner vertex");
+        let twin = (0..points.len())
+            .find(|&k| points[k].truncate() == points[top].truncate() && points[k].z < 0.0)
+            .expect("its twin");
+        points[top].z = -5.0;
+        assert!(points[twin].z > -5.0);
+        let mut mesh = LinedMesh::default();
+        mesh.push_triangles(&points, surface.scene.triangles(), true);
+        mesh.into_scene().expect("a scene")
+    };
+    assert!(!is_drawn(&crossing), "crossing inside");
+    // With the eye between the sheets neither horizon starts at infinity.
+    let inside = super::max_min::camera(dvec3(0.5, 0.25, 0.5), DVec3::X, PERSPECTIVE);
+    assert!(!check(&heights([4.0, -4.0], 0.0), &inside, "inside"));
+}
+
 #[test]
 fn what_is_no_function_over_a_convex_domain_is_left_to_mesh_engines() {
     let eye = dvec3(9.0, -7.0, 6.0);
