@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
+use hiddenline::camera::Projection;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::shading::preview::{self, PreviewOptions};
+use hiddenline::shading::preview::{self, PreviewError, PreviewOptions};
 use hiddenline::stats::peak_bytes;
 use hiddenline::write::Format;
 
@@ -136,6 +137,11 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let read = || job.input.mesh();
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, job.edges, job.edges.is_some(), &progress, &mut stats)?;
+    if job.options.fit_fov && camera.projection() == Projection::Orthographic {
+        return Err(
+            format!("{}; give --projection perspective", PreviewError::NoFieldOfView).into()
+        );
+    }
     progress.stage("drawing");
     let edges = job.edges.map(|lines| {
         let options = DrawOptions { lines, ..DrawOptions::default() };

@@ -58,6 +58,7 @@ pub(super) struct Job {
     border: bool,
     all_edges: bool,
     engine: EngineName,
+    order: Option<CellOrder>,
     /// Zero for lines as sampled.
     smoothness_mm: f64,
     underside: bool,
@@ -84,12 +85,20 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         ));
     }
     let bounds = surface.bounds();
+    run.notes.warnings.extend(surface.note());
     run.notes.warnings.extend(without_levels(job, bounds, factor)?);
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     run.progress.stage("drawing");
     let grid = surface.only_grid(job, &camera)?;
     let mut drawing = match grid {
         Some(grid) => draw_by_grid(job, grid, &lines, &camera, stats)?,
+        None if job.order.is_some() => {
+            return Err(
+                "--order needs one surface z = f(x, y) over a rectangle without holes, drawn \
+                        with grid lines only: leave --order out"
+                    .into(),
+            );
+        }
         None => draw_by_mesh(job, &surface, factor, &lines, &camera, stats)?,
     };
     run.notes.warnings.extend(crowding(job, &drawing, &camera));
@@ -195,7 +204,7 @@ fn draw_by_grid(
                 let family = if job.lines.along_x { Family::AlongX } else { Family::AlongY };
                 ("floating-horizon", floating_horizon::solve(grid, camera, family)?)
             }
-            _ => (max_min::NAME, max_min::solve(grid, camera, CellOrder::Rows)?),
+            _ => (max_min::NAME, max_min::solve(grid, camera, job.order.unwrap_or_default())?),
         })
     })?;
     stats.engine = engine;
@@ -282,8 +291,9 @@ fn draw_by_mesh(
     };
     let drawing = meshed::draw(&scene, camera, &options, mm_per_unit, stats);
     if job.engine == EngineName::MaxMin && stats.engine != max_min::NAME {
-        return Err("max-min draws one surface z = f(x, y) without holes, over a convex part of \
-                    the plane, none of it cut by the near plane: give --engine auto"
+        return Err("max-min draws one surface z = f(x, y) without holes over a convex part of \
+                    the plane, or two that meet along its border, seen from outside and not cut by \
+                    the near plane: give --engine auto"
             .into());
     }
     Ok(drawing)

@@ -82,6 +82,22 @@ impl TrimmedGrid {
         self.rim.values().copied()
     }
 
+    /// The least and greatest height; `None` when all is outside of the domain.
+    pub fn heights(&self) -> Option<(f64, f64)> {
+        let inside = self.grid.heights()?;
+        let rim = self.rim.values().map(|p| p.z);
+        Some(rim.fold(inside, |(low, high), z| (low.min(z), high.max(z))))
+    }
+
+    /// Whether both end at the same places, at heights within `tolerance` of each other.
+    pub fn shares_rim(&self, other: &Self, tolerance: f64) -> bool {
+        let meets = |(edge, p): (&[u32; 2], &DVec3)| {
+            let q = other.rim.get(edge);
+            q.is_some_and(|q| p.truncate() == q.truncate() && (p.z - q.z).abs() <= tolerance)
+        };
+        !self.rim.is_empty() && self.rim.len() == other.rim.len() && self.rim.iter().all(meets)
+    }
+
     /// Closes the gap that rounding leaves where two sheets end at the same rim: wherever both have a
     /// rim point at the same x and y, at heights within `tolerance` of each other, both take the mean
     /// height. Returns how many such points differed. `tolerance` is a height in model units.

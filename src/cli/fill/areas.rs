@@ -11,7 +11,7 @@ use crate::cli::values;
 #[derive(Args)]
 #[command(next_help_heading = "Areas")]
 pub(super) struct AreaArgs {
-    /// How it is found what is seen of each face
+    /// Visible-surface algorithm
     #[arg(long, value_enum, default_value = "auto")]
     engine: EngineName,
     /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use hiddenline::axes::Titles;
-use hiddenline::engines::surface::Lines;
+use hiddenline::engines::surface::{CellOrder, Lines};
 
 use super::Job;
 use super::sheet_args::{Aspect, DEFAULT_SAMPLES, SheetArgs};
@@ -93,13 +93,16 @@ struct LineArgs {
     /// Give lines on the underside of the surface a pen and a layer of their own, `underside`
     #[arg(long)]
     underside: bool,
-    /// How hidden lines are found
+    /// Hidden-line algorithm
     ///
-    /// auto: max-min where it can, otherwise roberts or appel; max-min: any lines by one surface
-    /// z = f(x, y) without holes; roberts, appel: any lines by any surface; floating-horizon: one
-    /// family by its own nearer lines.
+    /// auto: max-min where it applies, otherwise roberts or appel; max-min: one surface z = f(x, y)
+    /// without holes, or two that meet along their border, such as a sphere; roberts, appel: any
+    /// surface; floating-horizon: one family of lines, hidden by its own nearer lines.
     #[arg(long, value_enum, default_value = "auto")]
     engine: EngineName,
+    /// In which order max-min visits the cells of a grid; the drawing is the same
+    #[arg(long, value_enum)]
+    order: Option<OrderName>,
     /// Draw what is exactly visible, one stroke for each visible piece of each grid edge, with heights
     /// as given
     #[arg(long)]
@@ -147,6 +150,14 @@ pub(super) enum EngineName {
     FloatingHorizon,
     Roberts,
     Appel,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum OrderName {
+    /// Row by row, away from the eye
+    Rows,
+    /// Diagonal by diagonal, as Cantor counts pairs
+    Cantor,
 }
 
 /// Which level curves, heights as in the formula or file.
@@ -202,6 +213,8 @@ impl SurfaceArgs {
             Input::File(_) | Input::Points(_) => true,
             Input::Parametric { .. } => false,
         };
+        let two_sheets =
+            matches!(&sheets.input, Input::Formulas { formulas, .. } if formulas.len() == 2);
         let is_grid = match &sheets.input {
             Input::Formulas { domain, .. } => one_sheet && domain.is_none(),
             Input::File(_) => true,
@@ -220,10 +233,15 @@ impl SurfaceArgs {
                         .into(),
                 );
             }
-            EngineName::MaxMin if !one_sheet => {
-                return Err(
-                    "max-min draws one surface z = f(x, y): give --engine roberts or auto".into()
-                );
+            EngineName::MaxMin if !one_sheet && !two_sheets => {
+                return Err("max-min draws one surface z = f(x, y), or two that meet along their \
+                            border: give --engine roberts or auto"
+                    .into());
+            }
+            EngineName::FloatingHorizon | EngineName::Roberts | EngineName::Appel
+                if lines.order.is_some() =>
+            {
+                return Err("--order is for --engine max-min or auto".into());
             }
             _ => {}
         }
@@ -245,6 +263,10 @@ impl SurfaceArgs {
             border: has(LineName::Border),
             all_edges: has(LineName::Mesh),
             engine: lines.engine,
+            order: lines.order.map(|order| match order {
+                OrderName::Rows => CellOrder::Rows,
+                OrderName::Cantor => CellOrder::Diagonals,
+            }),
             smoothness_mm: if lines.exact { 0.0 } else { lines.smoothness },
             underside: lines.underside,
             titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },

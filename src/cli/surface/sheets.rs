@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use hiddenline::engines::surface::max_min;
 use hiddenline::model::mesh::Mesh;
-use hiddenline::surface::formula::Formula;
+use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{
     Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
     delaunay, evenly, read_heights, read_points,
@@ -23,6 +23,10 @@ use crate::cli::paths;
 
 /// Height of the drawn box as a part of the longer side of its base, with `--aspect box`.
 const BOX_HEIGHT: f64 = 0.4;
+
+/// Rim points of two sheets at the same x and y are one point if their heights differ by at most this
+/// part of the height of both sheets.
+const RIM_TOLERANCE: f64 = 1e-6;
 
 /// The range of x and y that a formula is drawn over, unless given.
 const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
@@ -62,8 +66,12 @@ pub(in crate::cli) struct Sheets {
 pub(super) enum Surface {
     /// One or more, over the same x and y.
     Grids(Vec<Grid>),
-    /// One or more, each over a part of the plane.
-    Trimmed(Vec<TrimmedGrid>),
+    /// One or more, each over a part of the plane. `n_joined` rim points of two sheets were moved to
+    /// their mean height.
+    Trimmed {
+        grids: Vec<TrimmedGrid>,
+        n_joined: usize,
+    },
     Points {
         points: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
@@ -92,7 +100,7 @@ impl Surface {
                     }
                 }
             }
-            Self::Trimmed(grids) => {
+            Self::Trimmed { grids, .. } => {
                 for trimmed in grids {
                     let grid = trimmed.grid();
                     let n = grid.zs().len() as u32;
@@ -110,7 +118,9 @@ impl Surface {
     pub(super) fn scale_heights(&mut self, factor: f64) {
         match self {
             Self::Grids(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
-            Self::Trimmed(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
+            Self::Trimmed { grids, .. } => {
+                grids.iter_mut().for_each(|grid| grid.scale_heights(factor))
+            }
             Self::Points { points, .. } | Self::Lattice { points, .. } => {
                 points.iter_mut().for_each(|p| p.z *= factor);
             }
@@ -123,7 +133,9 @@ impl Surface {
         let mut mesh = LinedMesh::default();
         match self {
             Self::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, lines)),
-            Self::Trimmed(grids) => grids.iter().for_each(|grid| mesh.push_trimmed(grid, lines)),
+            Self::Trimmed { grids, .. } => {
+                grids.iter().for_each(|grid| mesh.push_trimmed(grid, lines))
+            }
             Self::Points { points, triangles } => {
                 mesh.push_triangles(points, triangles, lines.triangles);
             }
@@ -175,7 +187,7 @@ impl Surface {
         }
         match self {
             Self::Grids(grids) => grids.iter().map(|g| (grid(g).0, grid(g).1, points(g))).collect(),
-            Self::Trimmed(grids) => {
+            Self::Trimmed { grids, .. } => {
                 let grids = grids.iter().map(TrimmedGrid::grid);
                 grids.map(|g| (grid(g).0, grid(g).1, points(g))).collect()
             }
@@ -186,11 +198,23 @@ impl Surface {
         }
     }
 
+    /// One line about rim points that were moved.
+    pub(super) fn note(&self) -> Option<String> {
+        match self {
+            Self::Trimmed { n_joined: n @ 1.., .. } => Some(format!(
+                "both sheets end at the same rim: {n} rim points took the mean height of the two"
+            )),
+            _ => None,
+        }
+    }
+
     pub(super) fn described(&self) -> String {
         let size = |grid: &Grid| format!("{} × {} samples", grid.xs().len(), grid.ys().len());
         match self {
             Self::Grids(grids) => grids.first().map_or_else(String::new, size),
-            Self::Trimmed(grids) => grids.first().map_or_else(String::new, |g| size(g.grid())),
+            Self::Trimmed { grids, .. } => {
+                grids.first().map_or_else(String::new, |g| size(g.grid()))
+            }
             Self::Points { points, triangles } => {
                 format!("{} points, {} triangles", points.len(), triangles.len())
             }
@@ -199,6 +223,23 @@ impl Surface {
             }
         }
     }
+}
+
+/// Sheets whose rims meet up to rounding are joined there if there are two of them.
+fn joined_at_rim(mut grids: Vec<TrimmedGrid>) -> Surface {
+    let tolerance = rim_tolerance(&grids);
+    let n_joined = match &mut grids[..] {
+        [one, other] => one.meet_at_rim(other, tolerance),
+        _ => 0,
+    };
+    Surface::Trimmed { grids, n_joined }
+}
+
+fn rim_tolerance(grids: &[TrimmedGrid]) -> f64 {
+    let heights = grids.iter().filter_map(TrimmedGrid::heights);
+    let (low, high) = heights
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+    RIM_TOLERANCE * (high - low)
 }
 
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
@@ -229,7 +270,25 @@ impl Sheets {
                 match domain {
                     None => {
                         let sample = |formula| Grid::sample(formula, x, y, samples);
-                        Surface::Grids(formulas.map(sample).collect::<Result<_, _>>()?)
+                        let grids = formulas.clone().map(sample).collect::<Result<Vec<_>, _>>()?;
+                        let has_holes = grids.iter().any(|grid| grid.holes() != Holes::None);
+                        let everywhere = Formula::parse("1", Variables::Plane)?;
+                        let trim =
+                            |formula| TrimmedGrid::sample(formula, &everywhere, x, y, samples);
+                        let ends_together = |trimmed: &Vec<TrimmedGrid>| match &trimmed[..] {
+                            [one, other] => one.shares_rim(other, rim_tolerance(trimmed)),
+                            _ => false,
+                        };
+                        let trimmed = match grids.len() {
+                            2 if has_holes => {
+                                Some(formulas.map(trim).collect::<Result<Vec<_>, _>>()?)
+                            }
+                            _ => None,
+                        };
+                        match trimmed.filter(ends_together) {
+                            Some(trimmed) => joined_at_rim(trimmed),
+                            None => Surface::Grids(grids),
+                        }
                     }
                     Some((domain, _)) => {
                         let sample = |formula| TrimmedGrid::sample(formula, domain, x, y, samples);
@@ -237,7 +296,7 @@ impl Sheets {
                         if grids.iter().all(TrimmedGrid::is_whole) {
                             Surface::Grids(grids.iter().map(|g| g.grid().clone()).collect())
                         } else {
-                            Surface::Trimmed(grids)
+                            joined_at_rim(grids)
                         }
                     }
                 }
@@ -364,6 +423,7 @@ impl Sheets {
             return Err(NO_CELLS.into());
         }
         let summary = format!("{}: {}", self.title(), surface.described());
-        Ok((mesh, Notes { summary, ..Notes::default() }))
+        let warnings = surface.note().into_iter().collect();
+        Ok((mesh, Notes { summary, warnings, ..Notes::default() }))
     }
 }

@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use self::overlay::Overlay;
 use self::shade::Shader;
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::engines::image::edge::center;
 use crate::engines::image::raster::{Corners, STRIP_ROWS};
 use crate::engines::image::{
@@ -96,7 +96,7 @@ pub struct PreviewOptions {
     pub color: [u8; 3],
     /// Where no face is seen; `None` for what suits.
     pub background: Option<[u8; 3]>,
-    /// Show exactly the vertical field of view instead of the whole scene.
+    /// Show exactly the vertical field of view instead of the whole scene; for perspective only.
     pub fit_fov: bool,
     /// Width of the strokes laid over it, in pixels.
     pub stroke_px: f64,
@@ -124,6 +124,9 @@ pub enum PreviewError {
     /// No pixels, or too many.
     #[error("a picture of {0} x {1} pixels cannot be made; sides are from 1 to 65536")]
     Size(u32, u32),
+    /// [`PreviewOptions::fit_fov`] with an orthographic camera.
+    #[error("an orthographic view has no field of view to fit")]
+    NoFieldOfView,
     /// The painter was asked for.
     #[error(transparent)]
     NoOrder(#[from] painter::NoOrder),
@@ -162,6 +165,9 @@ pub fn write(
     let sides = 1..=LARGEST_SIDE;
     if !(sides.contains(&width) && sides.contains(&height)) {
         return Err(PreviewError::Size(width, height));
+    }
+    if options.fit_fov && camera.projection() == Projection::Orthographic {
+        return Err(PreviewError::NoFieldOfView);
     }
     let map = options.pixel_map(scene, camera);
     // Pixels of the raster along each side of one of the picture.

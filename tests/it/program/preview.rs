@@ -2,7 +2,7 @@
 
 use std::process::Output;
 
-use super::{hiddenline, text};
+use super::{CUBE, assert_fails, hiddenline, text};
 use crate::models::SPOT;
 
 fn preview(arguments: &[&str]) -> Output {
@@ -169,4 +169,17 @@ fn bad_usage_is_told() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
         assert!(text.contains(message), "{arguments:?}: {text}");
     }
+}
+
+#[test]
+fn a_parallel_view_has_no_field_of_view_to_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    std::fs::write(folder.path().join("old.png"), "as it was").unwrap();
+    let arguments = ["preview", "cube.obj", "--fit-fov", "--view", "isometric", "-o", "old.png"];
+    let refused = hiddenline(folder.path(), &arguments);
+    assert_fails(&refused, 1, "no field of view to fit; give --projection perspective");
+    assert_eq!(std::fs::read_to_string(folder.path().join("old.png")).unwrap(), "as it was");
+    let shown = hiddenline(folder.path(), &["preview", "cube.obj", "--fit-fov", "-o", "-"]);
+    assert!(shown.status.success(), "{}", text(&shown.stderr));
 }

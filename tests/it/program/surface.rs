@@ -213,7 +213,7 @@ fn bad_input_is_told_in_one_line() {
     usage(&["x", "--samples", "1x5"], "at least 2 samples are needed");
     usage(&["x", "--lines", "levels", "--levels", "0"], "at least 1 level");
     usage(&["x", "--levels", "3"], "give --lines levels, too");
-    usage(&["x", "y", "--engine", "max-min"], "give --engine roberts or auto");
+    usage(&["x", "y", "1", "--engine", "max-min"], "give --engine roberts or auto");
     usage(&["--points", "heights", "--lines", "x"], "scattered points have no grid lines");
     let run = |arguments: &[&str], message: &str| fails(&folder, arguments, 1, message);
     run(&["1/0"], "no sample has a height");
@@ -380,4 +380,57 @@ fn sheets_show_where_they_cross() {
         let length = (ends[0][1] - ends[1][1]).abs();
         assert!((length - 10.0).abs() < 1e-12, "{samples} samples: {length}");
     }
+}
+
+#[test]
+fn both_orders_of_cells_give_the_same_drawing() {
+    let folder = with_file("");
+    let formula = ["2*sin(x)*cos(1.3*y)", "--samples", "31x19", "--exact", "--eye", "9,-12,5"];
+    let by = |order| {
+        let (strokes, engine) = drawn(&folder, &[&formula[..], &["--order", order]].concat());
+        assert_eq!(engine, "max-min");
+        segments(&strokes)
+    };
+    let (rows, cantor) = (by("rows"), by("cantor"));
+    assert!(rows.len() > 100 && rows.len() == cantor.len());
+    for (one, other) in rows.iter().zip(&cantor) {
+        assert!(one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-9), "{one:?}, {other:?}");
+    }
+    let with_order = |more: &[&str]| run(&folder, &[&formula[..], more].concat());
+    let refused = with_order(&["--order", "cantor", "--engine", "roberts"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let refused = with_order(&["--order", "cantor", "--lines", "levels"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--order needs one surface"));
+}
+
+#[test]
+fn a_sphere_of_two_sheets_is_drawn_by_max_min_as_by_roberts() {
+    let folder = with_file("");
+    let sheets = ["sqrt(1-x^2-y^2)", "(-sqrt(1-x^2-y^2))", "--x=-1.2:1.2", "--y=-1.2:1.2"];
+    for domain in [&["--where", "r<=1"][..], &[]] {
+        let ball =
+            [&sheets[..], &["--samples", "16", "--exact", "--eye", "4,-3,2"], domain].concat();
+        let (by_horizons, engine) = drawn(&folder, &ball);
+        assert_eq!(engine, "max-min", "{domain:?}");
+        let (by_roberts, engine) = drawn(&folder, &[&ball[..], &["--engine", "roberts"]].concat());
+        assert_eq!(engine, "roberts");
+        let length = |strokes: &[Value]| {
+            let of = |s: &[f64; 4]| (s[0] - s[2]).hypot(s[1] - s[3]);
+            segments(strokes).iter().map(of).sum::<f64>()
+        };
+        let (found, expected) = (length(&by_horizons), length(&by_roberts));
+        assert!((found - expected).abs() < 1e-9 * expected, "{found}, {expected}");
+        let output = run(&folder, &[&ball[..], &["--format", "json"]].concat());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        let lines = told.lines().filter(|line| line.contains("took the mean height"));
+        assert_eq!(lines.count(), 1, "{told}");
+    }
+    // Seen from inside, or with a gap along the rim, it is no work for max-min.
+    let refuses = |sheets: &[&str], more: &[&str]| {
+        let few = ["--samples", "9", "--exact", "--engine", "max-min"];
+        run(&folder, &[sheets, &few, more].concat()).status.code() == Some(1)
+    };
+    assert!(refuses(&sheets, &["--eye", "0.1,0,0.2"]));
+    assert!(refuses(&["sqrt(1-r^2)+1", "(-sqrt(1-r^2))", "--where", "r<=1"], &["--eye", "4,-3,2"]));
 }
