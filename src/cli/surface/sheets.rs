@@ -424,6 +424,6 @@ impl Sheets {
         }
         let summary = format!("{}: {}", self.title(), surface.described());
         let warnings = surface.note().into_iter().collect();
-        Ok((mesh, Notes { summary, warnings, ..Notes::default() }))
+        Ok((mesh, Notes { summary, warnings }))
     }
 }
