@@ -146,7 +146,8 @@ fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
     let (visibility, ..) = solve(&view, Engine::default(), &settings());
     let drawing = chain(&view, &visibility, None, &chaining());
     bencher.bench_local(|| {
-        let page = Page::new(&drawing, &camera(), &PageOptions::default()).expect("a page");
+        let page = Page::place(&drawing.extent(&camera()), &camera(), &PageOptions::default())
+            .expect("a page");
         let options = PlotOptions {
             pen_width_mm: 0.3,
             pens: Vec::new(),

@@ -12,7 +12,6 @@ use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::read::read_file;
 use hiddenline::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, fill};
-use hiddenline::stats::Stats;
 
 use plots::{Result, plot_options, save};
 
@@ -38,14 +37,8 @@ pub(crate) fn plot() -> Result<Plot> {
     let palette = Some(Palette::Inks(INKS.to_vec()));
     let options = FillOptions { palette, paint: Some([255, 240, 210]), ..FillOptions::default() };
     let filled = fill(&scene, &camera, &options)?;
-    let page = Page::new(&filled.borders(), &camera, &PageOptions::default())?;
-    let edges = draw(
-        &scene,
-        &camera,
-        &DrawOptions::default(),
-        |_| page.mm_per_image_unit(),
-        &mut Stats::default(),
-    );
+    let page = Page::place(&scene.extent(&camera), &camera, &PageOptions::default())?;
+    let edges = draw(&scene, &camera, &DrawOptions::default(), page.mm_per_image_unit()).drawing;
     Ok(page
         .plot(&edges, plot_options("Spot in five inks"))
         .with_fills(&page, &filled, DEFAULT_SEAM_MM)

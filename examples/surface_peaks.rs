@@ -4,13 +4,13 @@ mod plots;
 
 use glam::dvec3;
 
-use hiddenline::axes::{Titles, dress};
+use hiddenline::axes::{Titles, axes};
 use hiddenline::camera::framing::Framing;
 use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
-use hiddenline::surface::Grid;
 use hiddenline::surface::formula::{Formula, Variables};
+use hiddenline::surface::{Grid, lattice_extent};
 
 use plots::{Result, plot_options, save};
 
@@ -31,10 +31,10 @@ pub(crate) fn plot() -> Result<Plot> {
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows)?;
     let mut drawing = strokes(&grid, &pieces, &camera, &Lines { every: 5, ..Lines::default() });
     let titles = Titles { drawing: "Peaks".into(), ..Titles::default() };
-    dress(&mut drawing, bounds, Z_FACTOR, &camera, &titles);
-    Ok(Page::new(&drawing, &camera, &PageOptions::default())?
-        .plot(&drawing, plot_options("Peaks"))
-        .plot)
+    let extent = lattice_extent(241, 241 * 241, |k| grid.point(k as u32), &camera);
+    drawing.append(&axes(&extent, bounds, Z_FACTOR, &camera, &titles));
+    let page = Page::place(&drawing.extent(&camera), &camera, &PageOptions::default())?;
+    Ok(page.plot(&drawing, plot_options("Peaks")).plot)
 }
 
 fn main() -> Result<()> {

@@ -98,25 +98,6 @@ pub fn chain(
     drawing
 }
 
-/// The length in image units that is `shortest_mm` on paper; zero for exact drawings.
-///
-/// `mm_per_unit` tells how many millimetres on paper an image unit becomes for a drawing with the
-/// given, not yet joined, strokes. It is asked only when short strokes are to be dropped.
-pub fn shortest(
-    view: &ViewedScene,
-    visibility: &Visibility,
-    outline: Option<&Outline>,
-    options: &ChainOptions,
-    shortest_mm: f64,
-    mm_per_unit: impl FnOnce(&Drawing) -> f64,
-) -> f64 {
-    if options.exact || shortest_mm <= 0.0 {
-        return 0.0;
-    }
-    let pieces = ChainOptions { exact: true, shortest: 0.0, ..*options };
-    shortest_mm / mm_per_unit(&chain(view, visibility, outline, &pieces))
-}
-
 fn push(drawing: &mut Drawing, first: &Piece, points: &[DVec2]) {
     if first.outline {
         drawing.push_outline(first.kind, points.iter().copied());

@@ -1,12 +1,14 @@
 //! From a scene and a camera to strokes: the stages between, in order.
 
+pub mod meshed;
+
 use crate::camera::Camera;
-use crate::chain::{ChainOptions, chain, shortest};
+use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
-use crate::engines::edge::{Engine, Settings, outline, solve};
+use crate::engines::edge::{Counts, Engine, Settings, outline, solve};
 use crate::model::scene::Scene;
-use crate::stats::{Stats, timed};
 use crate::strokes::Drawing;
+use crate::timing::{Seconds, timed};
 
 /// The default contact tolerance as a part of the largest coordinate: twice the spacing of single
 /// precision numbers, which most model files are written in.
@@ -19,7 +21,7 @@ pub const DEFAULT_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
 /// as text files have them, make of a model that is one unit large.
 pub const LEAST_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 
-/// The shortest stroke, in millimetres on paper, unless set otherwise: a little less than the width
+/// The shortest stroke, in millimeters on paper, unless set otherwise: a little less than the width
 /// of a pen, which draws a dot of that size anyway.
 pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.25;
 
@@ -56,7 +58,7 @@ pub struct DrawOptions {
     /// plane, in model units; `None` for the default, which depends on the size of the coordinates.
     pub contact_tolerance: Option<f64>,
     /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between two
-    /// visible pieces of one edge are closed. In millimetres on paper.
+    /// visible pieces of one edge are closed. In millimeters on paper.
     pub shortest_stroke_mm: f64,
     /// Join only pieces of one kind and one `qi`, so that each stroke's attributes hold for all of
     /// it; otherwise all that one pen draws is joined.
@@ -99,48 +101,50 @@ impl DrawOptions {
     }
 }
 
-/// Draws `scene` as `camera` sees it; counts and times go to `stats`.
+/// A drawing, and what it took to make it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// The strokes.
+    pub drawing: Drawing,
+    /// The engine that found what is hidden, by its name on the command line.
+    pub engine: &'static str,
+    /// How many edges and other lines of the scene were selected.
+    pub n_lines: usize,
+    /// How much work the engine did.
+    pub counts: Counts,
+    /// How many decisions the floating-point filters left to exact arithmetic.
+    pub n_exact: u64,
+    /// Wall time of classification, visibility and strokes; the rest is zero.
+    pub seconds: Seconds,
+}
+
+/// Draws `scene` as `camera` sees it.
 ///
 /// Lines of intersection are drawn when the scene has them; see
 /// [`Scene::with_intersections`](crate::model::scene::Scene::with_intersections).
 ///
-/// `mm_per_unit` tells how many millimetres on paper an image unit becomes for a drawing with the
-/// given, not yet joined, strokes. It is asked only when short strokes are to be dropped.
-pub fn draw(
-    scene: &Scene,
-    camera: &Camera,
-    options: &DrawOptions,
-    mm_per_unit: impl FnOnce(&Drawing) -> f64,
-    stats: &mut Stats,
-) -> Drawing {
-    let view = timed(&mut stats.seconds.classify, || {
+/// `mm_per_unit` is the number of millimeters on paper for one image unit, which the page knows from
+/// the scene's [`Extent`](crate::extent::Extent) alone. It turns the shortest stroke into a length in
+/// the image; where that is zero it does not matter.
+pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: f64) -> Drawn {
+    let mut seconds = Seconds::default();
+    let view = timed(&mut seconds.classify, || {
         ViewedScene::new(scene, camera, options.lines, options.crease_deg)
     });
-    let (visibility, counts, engine) = timed(&mut stats.seconds.visibility, || {
-        solve(&view, options.engine, &options.settings(scene))
-    });
-    let outline = timed(&mut stats.seconds.visibility, || {
+    let (visibility, counts, engine) =
+        timed(&mut seconds.visibility, || solve(&view, options.engine, &options.settings(scene)));
+    let outline = timed(&mut seconds.visibility, || {
         options.lines.has_outline().then(|| outline::find(&view))
     });
-    stats.engine = engine;
-    stats.drawn_edges = view.drawn().len();
-    stats.counts.candidate_pairs = counts.candidate_pairs;
-    stats.counts.contour_crossings = counts.contour_crossings;
-    stats.counts.fallback_edges = counts.fallback_edges;
-    stats.counts.checksum_failures = counts.checksum_failures;
-    stats.counts.sight_lines = counts.sight_lines;
-    stats.counts.exact_predicates = view.sight().n_exact();
-    timed(&mut stats.seconds.strokes, || {
-        let mut chaining = ChainOptions {
-            hidden: options.hidden != HiddenLines::None,
-            hidden_levels: options.hidden_levels,
-            exact: options.exact,
-            apart_by_kind: options.apart_by_kind,
-            shortest: 0.0,
-        };
-        let shortest_mm = options.shortest_stroke_mm;
-        chaining.shortest =
-            shortest(&view, &visibility, outline.as_ref(), &chaining, shortest_mm, mm_per_unit);
-        chain(&view, &visibility, outline.as_ref(), &chaining)
-    })
+    let chaining = ChainOptions {
+        hidden: options.hidden != HiddenLines::None,
+        hidden_levels: options.hidden_levels,
+        exact: options.exact,
+        apart_by_kind: options.apart_by_kind,
+        shortest: if options.exact { 0.0 } else { options.shortest_stroke_mm / mm_per_unit },
+    };
+    let drawing =
+        timed(&mut seconds.strokes, || chain(&view, &visibility, outline.as_ref(), &chaining));
+    let (n_lines, n_exact) = (view.drawn().len(), view.sight().n_exact());
+    Drawn { drawing, engine, n_lines, counts, n_exact, seconds }
 }

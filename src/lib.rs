@@ -40,12 +40,16 @@
 //!
 //! # Units and frames
 //!
-//! World: model units, right-handed, z up. Image: see [`view`]. Page: millimetres, see [`plot`].
+//! World: model units, right-handed, z up. Image: see [`view`]. Page: millimeters, see [`plot`].
 //! Angles are in radians unless a name ends in `_deg`.
+
+pub mod timing;
 
 pub mod camera;
 
 pub mod predicates;
+
+pub mod extent;
 
 pub mod model;
 
@@ -53,9 +57,9 @@ pub mod read;
 
 pub mod strokes;
 
-pub mod surface;
-
 pub mod classify;
+
+pub mod surface;
 
 pub mod engines;
 
@@ -77,5 +81,3 @@ pub mod optimize;
 pub mod read_svg;
 
 pub mod write;
-
-pub mod stats;

@@ -13,7 +13,6 @@
 //! Nothing is written outside the margins: lines that would leave are cropped there.
 
 mod areas;
-mod crop;
 mod dash;
 mod paper;
 mod pens;
@@ -23,6 +22,8 @@ use thiserror::Error;
 
 use crate::camera::{Camera, Projection};
 use crate::draw::HiddenLines;
+use crate::extent::Extent;
+use crate::extent::window::Window;
 use crate::plot::{Layer, Pen, Plot};
 use crate::shading::fill::Filled;
 use crate::strokes::Drawing;
@@ -36,11 +37,6 @@ pub const DEFAULT_MARGIN_MM: f64 = 10.0;
 
 /// Width of the pen's line in millimetres, unless set otherwise.
 pub const DEFAULT_PEN_WIDTH_MM: f64 = 0.3;
-
-/// A perspective drawing is fitted by what lies within this angle of the direction of view, across
-/// and up: near the eye's own plane images are arbitrarily far out, and fitting these would shrink
-/// everything else to a dot.
-pub const WIDEST_FITTED_ANGLE_DEG: f64 = 60.0;
 
 /// Cropping leaves alone what is outside the margins by less than half of the last digit that
 /// writers write, and moves it onto the margin: such points are there by rounding only.
@@ -159,12 +155,12 @@ pub struct PlacedPlot {
 }
 
 impl Page {
-    /// Chooses orientation and map for a drawing. O(points).
+    /// Chooses orientation and map for what takes up `extent` of the image.
     ///
     /// # Errors
     /// See [`PageError`].
-    pub fn new(
-        drawing: &Drawing,
+    pub fn place(
+        extent: &Extent,
         camera: &Camera,
         options: &PageOptions,
     ) -> Result<Self, PageError> {
@@ -172,7 +168,7 @@ impl Page {
         if !(margin_mm >= 0.0 && margin_mm.is_finite()) {
             return Err(PageError::NegativeMargin(margin_mm));
         }
-        let (low, high) = fitted_bounds(drawing, camera).unwrap_or_default();
+        let (low, high) = extent.corners().unwrap_or_default();
         let suits = match options.placement {
             Placement::FieldOfView => Orientation::Landscape,
             _ if high.y - low.y > high.x - low.x => Orientation::Portrait,
@@ -191,7 +187,7 @@ impl Page {
         let (scale, center) = match options.placement {
             Placement::Fit => {
                 let scale = (usable / (high - low)).min_element();
-                // A drawing without extent, or none at all, has no scale of its own.
+                // A point, or nothing at all, fits at any scale.
                 (if scale.is_finite() { scale } else { 1.0 }, low / 2.0 + high / 2.0)
             }
             Placement::Scale { mm_per_unit } => {
@@ -223,10 +219,10 @@ impl Page {
     }
 
     /// What lies between the margins.
-    fn window(&self) -> crop::Window {
+    fn window(&self) -> Window {
         let margin = DVec2::splat(self.margin_mm);
         let sheet = DVec2::new(self.paper.width_mm, self.paper.height_mm);
-        crop::Window { low: margin, high: sheet - margin, slack: CROP_SLACK_MM }
+        Window { low: margin, high: sheet - margin, slack: CROP_SLACK_MM }
     }
 
     /// Maps strokes onto the page, crops them to the margins and gives each to its pen.
@@ -296,31 +292,4 @@ impl PlacedPlot {
         self.plot.layers = layers;
         self
     }
-}
-
-/// The box that is fitted to the page: around all strokes or, in perspective, around what of them
-/// lies within the widest angle. `None` without strokes.
-fn fitted_bounds(drawing: &Drawing, camera: &Camera) -> Option<(DVec2, DVec2)> {
-    let bounds = drawing.bounds()?;
-    if camera.projection() == Projection::Orthographic {
-        return Some(bounds);
-    }
-    let widest = DVec2::splat(libm::tan(WIDEST_FITTED_ANGLE_DEG.to_radians()));
-    if bounds.0.cmpge(-widest).all() && bounds.1.cmple(widest).all() {
-        return Some(bounds);
-    }
-    let window = crop::Window { low: -widest, high: widest, slack: 0.0 };
-    let mut within: Option<(DVec2, DVec2)> = None;
-    let mut points = Vec::new();
-    for stroke in drawing.iter() {
-        points.clear();
-        points.extend_from_slice(stroke.points);
-        window.crop(&mut points, |piece| {
-            for &p in piece {
-                within = Some(within.map_or((p, p), |(low, high)| (low.min(p), high.max(p))));
-            }
-        });
-    }
-    // Looking past everything: then there is nothing but the far outside to fit.
-    Some(within.unwrap_or(bounds))
 }

@@ -2,6 +2,9 @@
 
 use glam::DVec2;
 
+use crate::camera::Camera;
+use crate::extent::Extent;
+
 /// Why a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StrokeKind {
@@ -113,6 +116,13 @@ impl Drawing {
         }
     }
 
+    /// Appends the strokes of another drawing.
+    pub fn append(&mut self, other: &Self) {
+        let before = self.points.len() as u32;
+        self.points.extend_from_slice(&other.points);
+        self.heads.extend(other.heads.iter().map(|head| Head { end: before + head.end, ..*head }));
+    }
+
     /// Appends the strokes of another drawing, as lines on the underside of a surface.
     pub fn append_undersides(&mut self, other: &Self) {
         let before = self.points.len() as u32;
@@ -137,13 +147,18 @@ impl Drawing {
     }
 
     /// The strokes in order.
-    pub fn iter(&self) -> impl Iterator<Item = Stroke<'_>> {
+    pub fn iter(&self) -> impl Iterator<Item = Stroke<'_>> + Clone {
         self.heads.iter().scan(0, |start, head| {
             let points = &self.points[*start..head.end as usize];
             *start = head.end as usize;
             let Head { kind, qi, outline, underside, .. } = *head;
             Some(Stroke { kind, qi, outline, underside, points })
         })
+    }
+
+    /// What of the image the strokes take up. O(points).
+    pub fn extent(&self, camera: &Camera) -> Extent {
+        Extent::of_polylines(self.iter().map(|stroke| stroke.points), camera)
     }
 
     /// Smallest box around all points as (lowest, highest) corner; `None` without strokes.

@@ -2,12 +2,10 @@
 
 use hiddenline::camera::framing::Framing;
 use hiddenline::draw::DEFAULT_SHORTEST_STROKE_MM;
+use hiddenline::draw::meshed::{MeshedOptions, draw};
 use hiddenline::engines::edge::Engine;
-use hiddenline::engines::surface::meshed::{MeshedOptions, draw};
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
-use hiddenline::stats::Stats;
-use hiddenline::strokes::Drawing;
 use hiddenline::surface::{LatticeLines, LinedMesh};
 
 use super::plots::{Result, plot_options};
@@ -21,10 +19,8 @@ pub(crate) fn net(every: usize) -> LatticeLines {
 pub(crate) fn lined_plot(title: &str, mesh: LinedMesh, framing: Framing) -> Result<Plot> {
     let surface = mesh.into_scene()?;
     let camera = framing.camera(surface.scene.mesh().bounds().unwrap_or_default())?;
-    let page = PageOptions::default();
-    let mm_per_unit = |drawing: &Drawing| {
-        Page::new(drawing, &camera, &page).map_or(1.0, |page| page.mm_per_image_unit())
-    };
+    let extent = surface.scene.extent(&camera);
+    let page = Page::place(&extent, &camera, &PageOptions::default())?;
     let options = MeshedOptions {
         engine: Engine::Auto,
         folds: true,
@@ -35,6 +31,6 @@ pub(crate) fn lined_plot(title: &str, mesh: LinedMesh, framing: Framing) -> Resu
         apart_by_kind: false,
         shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
     };
-    let drawing = draw(&surface, &camera, &options, mm_per_unit, &mut Stats::default());
-    Ok(Page::new(&drawing, &camera, &page)?.plot(&drawing, plot_options(title)).plot)
+    let drawing = draw(&surface, &camera, &options, page.mm_per_image_unit()).drawing;
+    Ok(page.plot(&drawing, plot_options(title)).plot)
 }

@@ -6,8 +6,6 @@ use hiddenline::model::mesh::Mesh;
 use hiddenline::model::scene::Scene;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::plot::Plot;
-use hiddenline::stats::Stats;
-use hiddenline::strokes::Drawing;
 
 use super::plots::{Result, plot_options};
 
@@ -25,11 +23,9 @@ impl Sheet {
     pub(crate) fn plot(self) -> Result<Plot> {
         let camera = self.framing.camera(self.mesh.bounds().unwrap_or_default())?;
         let scene = Scene::new(self.mesh);
-        let mm_per_unit = |drawing: &Drawing| {
-            Page::new(drawing, &camera, &self.page).map_or(1.0, |page| page.mm_per_image_unit())
-        };
-        let drawing = draw(&scene, &camera, &self.draw, mm_per_unit, &mut Stats::default());
+        let page = Page::place(&scene.extent(&camera), &camera, &self.page)?;
+        let drawing = draw(&scene, &camera, &self.draw, page.mm_per_image_unit()).drawing;
         let options = PlotOptions { hidden: self.draw.hidden, ..plot_options(self.title) };
-        Ok(Page::new(&drawing, &camera, &self.page)?.plot(&drawing, options).plot)
+        Ok(page.plot(&drawing, options).plot)
     }
 }

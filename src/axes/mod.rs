@@ -19,6 +19,7 @@ use glam::{DVec2, DVec3, dvec2};
 
 use self::axis::{Axis, Laid, write_centered};
 use crate::camera::{Camera, Projection};
+use crate::extent::Extent;
 use crate::strokes::Drawing;
 
 /// Height of numbers, as a part of the longer side of the box's image: 4.6 mm on A4 landscape.
@@ -39,24 +40,32 @@ impl Default for Titles {
     }
 }
 
-/// Adds axes around `bounds`, the (lowest, highest) corner of what is drawn, and titles.
+/// Axes around `bounds`, the (lowest, highest) corner of what is drawn, and titles above `extent`, what
+/// of the image that takes up.
 ///
 /// Numbers are heights divided by `z_factor`: heights as given, for a surface whose heights were
 /// multiplied by it. An axis that has no edge on the outline of the box is left out; so are all
 /// when a corner of the box is not beyond the near plane.
-pub fn dress(
-    drawing: &mut Drawing,
+pub fn axes(
+    extent: &Extent,
     bounds: (DVec3, DVec3),
     z_factor: f64,
     camera: &Camera,
     titles: &Titles,
-) {
-    let Some((axes, (low, high), height)) = lay(bounds, z_factor, camera, titles) else { return };
-    axes.iter().for_each(|axis| axis.draw(drawing));
+) -> Drawing {
+    let mut drawing = Drawing::default();
+    let Some((axes, (low, high), height)) = lay(bounds, z_factor, camera, titles) else {
+        return drawing;
+    };
+    axes.iter().for_each(|axis| axis.draw(&mut drawing));
     if !titles.drawing.is_empty() {
-        let at = dvec2(low.x / 2.0 + high.x / 2.0, high.y.max(top(drawing)) + 3.0 * height);
-        write_centered(drawing, &titles.drawing, 1.5 * height, at);
+        let tops =
+            [extent.corners(), drawing.bounds()].map(|corners| corners.map(|(_, high)| high.y));
+        let top = tops.into_iter().flatten().fold(high.y, f64::max);
+        let at = dvec2(low.x / 2.0 + high.x / 2.0, top + 3.0 * height);
+        write_centered(&mut drawing, &titles.drawing, 1.5 * height, at);
     }
+    drawing
 }
 
 /// Axes in their places, the least and greatest coordinates of the box in the image, and the height
@@ -100,10 +109,6 @@ fn lay(bounds: (DVec3, DVec3), z_factor: f64, camera: &Camera, titles: &Titles) 
         laid[k].set_title(title);
     }
     Some((laid, (low, high), height))
-}
-
-fn top(drawing: &Drawing) -> f64 {
-    drawing.bounds().map_or(f64::NEG_INFINITY, |(_, high)| high.y)
 }
 
 struct BoundingBox<'a> {

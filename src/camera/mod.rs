@@ -15,8 +15,12 @@
 
 pub mod framing;
 
+mod image_point;
+
 use glam::{DVec2, DVec3};
 use thiserror::Error;
+
+pub use self::image_point::ImagePoint;
 
 /// How rays of sight run.
 #[derive(Debug, Clone, Copy, PartialEq)]

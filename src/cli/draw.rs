@@ -7,8 +7,7 @@ use std::error::Error;
 use clap::Args;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::optimize::Options;
-use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
-use hiddenline::strokes::Drawing;
+use hiddenline::page::{Dash, PageOptions, PlotOptions};
 use hiddenline::write::Format;
 
 use self::lines::LineArgs;
@@ -16,7 +15,7 @@ use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
-use super::paper::Run;
+use super::paper::{Run, Sheet};
 use super::scene::Subject;
 use super::{Refused, config, source};
 
@@ -101,16 +100,12 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.notes.add(notes);
     run.unit_mm = job.unit_mm;
     run.progress.stage("drawing");
-    // A page that cannot be made is reported when the drawing is placed on it.
-    let mm_per_unit = |drawing: &Drawing| {
-        Page::new(drawing, &camera, &job.page).map_or(1.0, |page| page.mm_per_image_unit())
-    };
-    let drawing = draw(&scene, &camera, &job.draw, mm_per_unit, &mut run.stats);
+    let sheet = Sheet::new(scene.extent(&camera), camera, &job.page)?;
+    let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
     run.stats.count(&scene);
-    run.stats.strokes = drawing.len();
-    run.stats.points = drawing.n_points();
+    run.stats.add(&drawn);
     drop(scene);
-    run.draw(&drawing, &camera, &job.page, plot_options(job), &Options::for_drawings())
+    run.draw(&drawn.drawing, &sheet, plot_options(job), &Options::for_drawings())
 }
 
 fn plot_options(job: &Job) -> PlotOptions {

@@ -6,20 +6,20 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use glam::{DMat3, DVec2};
+use glam::DMat3;
 use hiddenline::camera::Camera;
 use hiddenline::camera::framing::sin_cos_deg;
 use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::face::Prepared;
-use hiddenline::engines::image::raster::Corners;
+use hiddenline::extent::Extent;
 use hiddenline::model::scene::Scene;
 use hiddenline::optimize::Options;
 use hiddenline::page::{Page, PageOptions, PlotOptions};
 use hiddenline::read::material_colors;
 use hiddenline::shading::fill::{FillOptions, Filled, fill_prepared};
-use hiddenline::stats::timed;
-use hiddenline::strokes::{Drawing, StrokeKind};
+use hiddenline::strokes::Drawing;
+use hiddenline::timing::timed;
 use hiddenline::write::NoFills;
 
 use self::areas::AreaArgs;
@@ -182,8 +182,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     drop(progress);
     let cameras = (0..n).map(|k| turned(&camera, 360.0 * f64::from(k) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
-    let frame = frame(&scene, &cameras);
-    let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: Some(frame) };
+    let extents = cameras.iter().map(|camera| scene.extent(camera));
+    let frame = Some(extents.fold(Extent::EMPTY, Extent::union));
+    let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame };
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
@@ -200,8 +201,8 @@ struct Picture<'a> {
     scene: &'a Scene,
     prepared: &'a Prepared<'a>,
     fill: FillOptions,
-    /// What is fitted to the page; `None` for what is seen.
-    frame: Option<Drawing>,
+    /// What is fitted to the page; `None` for what the camera sees.
+    frame: Option<Extent>,
 }
 
 impl Picture<'_> {
@@ -214,32 +215,21 @@ impl Picture<'_> {
         let Self { job, scene, .. } = self;
         run.progress.stage("filling");
         let mut options = self.fill.clone();
-        let own_frame = || frame(scene, std::slice::from_ref(camera));
-        let rough = Page::new(&self.frame.clone().unwrap_or_else(own_frame), camera, &job.page)?;
-        options.settings.leaf = Some(job.leaf_mm / rough.mm_per_image_unit());
+        let extent = self.frame.unwrap_or_else(|| scene.extent(camera));
+        let page = Page::place(&extent, camera, &job.page)?;
+        options.settings.leaf = Some(job.leaf_mm / page.mm_per_image_unit());
         let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
             fill_prepared(self.prepared, camera, &options)
         })?;
+        run.progress.stage("drawing");
+        let mut edges = Drawing::default();
+        if let Some(options) = &job.edges {
+            let drawn = draw(scene, camera, options, page.mm_per_image_unit());
+            run.stats.add(&drawn);
+            edges = drawn.drawing;
+        }
         run.stats.counts.fill = filled.work;
         run.stats.engine = filled.engine.name();
-        let page = match &self.frame {
-            Some(_) => rough,
-            None => {
-                // What is hidden has a part in the box, too, so that edges on top never leave it.
-                let mut borders = filled.borders();
-                frame_into(&mut borders, scene, std::slice::from_ref(camera));
-                Page::new(&borders, camera, &job.page)?
-            }
-        };
-        run.progress.stage("drawing");
-        let engine = run.stats.engine;
-        let edges = job
-            .edges
-            .map(|edges| draw(scene, camera, &edges, |_| page.mm_per_image_unit(), &mut run.stats));
-        run.stats.engine = engine;
-        let edges = edges.unwrap_or_default();
-        run.stats.strokes = edges.len();
-        run.stats.points = edges.n_points();
         let options = PlotOptions {
             pen_width_mm: job.pen_width_mm,
             pens: job.output.plotting.pens(job.pen_width_mm),
@@ -256,22 +246,6 @@ impl Picture<'_> {
             run.notes.warnings.push("the picture was cut off at the margins".into());
         }
         run.plot_to(path, &page.paper.description(), placed.plot, &Options::for_drawings())
-    }
-}
-
-/// The rectangles around all that cameras see, as strokes.
-fn frame(scene: &Scene, cameras: &[Camera]) -> Drawing {
-    let mut frame = Drawing::default();
-    frame_into(&mut frame, scene, cameras);
-    frame
-}
-
-fn frame_into(frame: &mut Drawing, scene: &Scene, cameras: &[Camera]) {
-    for camera in cameras {
-        if let Some((low, high)) = Corners::new(scene, camera).bounds() {
-            let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y), low];
-            frame.push(StrokeKind::Silhouette, 0, corners);
-        }
     }
 }
 

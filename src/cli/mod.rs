@@ -19,6 +19,7 @@ mod preview;
 mod progress;
 mod scene;
 mod source;
+mod stats;
 mod surface;
 mod usage;
 mod values;

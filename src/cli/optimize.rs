@@ -8,7 +8,7 @@ use clap::Args;
 use hiddenline::optimize::Options;
 use hiddenline::page::Drawn;
 use hiddenline::read_svg;
-use hiddenline::stats::timed;
+use hiddenline::timing::timed;
 use hiddenline::write::Format;
 
 use super::messages::counted;

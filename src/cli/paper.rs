@@ -6,11 +6,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use hiddenline::camera::Camera;
+use hiddenline::extent::Extent;
+use hiddenline::optimize::estimate::PenWork;
 use hiddenline::optimize::{Effort, Options};
-use hiddenline::page::{Page, PageOptions, Placement, PlotOptions};
+use hiddenline::page::{Page, PageError, PageOptions, Placement, PlotOptions};
 use hiddenline::plot::Plot;
-use hiddenline::stats::{PenWork, PlotStats, Stats, peak_bytes, timed};
 use hiddenline::strokes::Drawing;
+use hiddenline::timing::timed;
 use hiddenline::write::png::PngError;
 use hiddenline::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
@@ -19,6 +21,7 @@ use super::messages::counted;
 use super::output::OutputOptions;
 use super::plotting::Finished;
 use super::progress::Progress;
+use super::stats::{PlotStats, Stats, peak_bytes};
 use super::{messages, output};
 
 /// What reading has to tell, for when all went well.
@@ -45,6 +48,47 @@ pub(super) struct Run<'a> {
     pub(super) notes: Notes,
     /// Millimetres of a model unit, for scales in messages.
     pub(super) unit_mm: f64,
+}
+
+/// A page, and what it shows from where.
+pub(super) struct Sheet {
+    pub(super) camera: Camera,
+    pub(super) page: Page,
+    extent: Extent,
+    options: PageOptions,
+}
+
+impl Sheet {
+    /// The page for what takes up `extent` of the image.
+    pub(super) fn new(
+        extent: Extent,
+        camera: Camera,
+        options: &PageOptions,
+    ) -> Result<Self, PageError> {
+        let page = Page::place(&extent, &camera, options)?;
+        Ok(Self { camera, page, extent, options: *options })
+    }
+
+    /// The largest scale at which nothing is cut off, as typed on the command line, if a scale was
+    /// given.
+    fn largest_scale(&self, unit_mm: f64) -> Option<String> {
+        let Placement::Scale { mm_per_unit } = self.options.placement else { return None };
+        let fit = PageOptions { placement: Placement::Fit, ..self.options };
+        let fit = Page::place(&self.extent, &self.camera, &fit).ok()?.mm_per_image_unit();
+        let scale = fit / self.page.mm_per_image_unit() * mm_per_unit / unit_mm;
+        // Rounded down to three digits, so that it does fit.
+        let rounded = |x: f64, up: bool| {
+            let power = libm::pow(10.0, libm::floor(libm::log10(x)) - 2.0);
+            let digits = if up { (x / power).ceil() } else { (x / power).floor() };
+            // Dividing by a whole number rounds once.
+            if power < 1.0 { digits / libm::round(1.0 / power) } else { digits * power }
+        };
+        if !(scale > 0.0 && scale.is_finite()) {
+            return None;
+        }
+        let (large, small) = (rounded(scale, false), rounded(1.0 / scale, true));
+        Some(if scale >= 1.0 { format!("{large}:1") } else { format!("1:{small}") })
+    }
 }
 
 /// Refuses to send a picture to a terminal.
@@ -74,36 +118,33 @@ impl<'a> Run<'a> {
         Ok(Self { output, start, progress, stats, notes, unit_mm: 1.0 })
     }
 
-    /// Puts `drawing` on paper and ends the run.
+    /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
     pub(super) fn draw(
         mut self,
         drawing: &Drawing,
-        camera: &Camera,
-        options: &PageOptions,
+        sheet: &Sheet,
         plot: PlotOptions,
         usual: &Options,
     ) -> Result<(), Box<dyn Error>> {
-        let is_json = self.output.format == Format::Json;
+        let Sheet { camera, page, .. } = sheet;
+        let paper = page.paper.description();
+        if self.output.format == Format::Json {
+            let path = self.output.path.as_deref();
+            let what = Written { paper: &paper, contents: drawing_described(drawing) };
+            return self.write(path, what, drawing.is_empty(), None, |out| {
+                Ok(json::write(drawing, camera, page.page_from_image, out)?)
+            });
+        }
         self.progress.stage("placing");
-        let mut seconds = self.stats.seconds;
-        let (page, placed) = timed(&mut seconds.write, || -> Result<_, Box<dyn Error>> {
-            let page = Page::new(drawing, camera, options)?;
-            Ok((page, page.plot(drawing, plot)))
-        })?;
-        if placed.cropped && !is_json {
-            let fitting = largest_scale(drawing, camera, options, self.unit_mm);
+        let seconds = &mut self.stats.seconds.write;
+        let placed = timed(seconds, || page.plot(drawing, plot));
+        if placed.cropped {
+            let fitting = sheet.largest_scale(self.unit_mm);
             let hint = fitting.map(|scale| format!("; the largest scale that fits is {scale}"));
             let hint = hint.unwrap_or_default();
             self.notes.warnings.push(format!("lines were cut off at the margins{hint}"));
         }
-        self.stats.seconds = seconds;
-        if is_json {
-            let path = self.output.path.as_deref();
-            return self.write(path, &page.paper.description(), &placed.plot, None, |out| {
-                Ok(json::write(drawing, camera, page.page_from_image, out)?)
-            });
-        }
-        self.plot(&page.paper.description(), placed.plot, usual)
+        self.plot(&paper, placed.plot, usual)
     }
 
     /// Joins, orders and writes a page, and ends the run.
@@ -139,8 +180,12 @@ impl<'a> Run<'a> {
             }
             _ => None,
         };
+        self.notes.warnings.extend(alike_pens(&plot));
+        let is_empty =
+            plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty());
+        let what = Written { paper, contents: described(&plot, &done) };
         let written = &plot;
-        self.write(path, paper, written, Some(done), |out| {
+        self.write(path, what, is_empty, Some(done), |out| {
             match (output.format, &output.target.device) {
                 (Format::Hpgl, _) => match &profile {
                     Some(profile) => Ok(hpgl::write(written, profile, out)?),
@@ -160,15 +205,14 @@ impl<'a> Run<'a> {
     fn write(
         mut self,
         path: Option<&Path>,
-        paper: &str,
-        plot: &Plot,
+        what: Written,
+        is_empty: bool,
         done: Option<Done>,
         write: impl FnOnce(&mut dyn Write) -> Result<(), PngError>,
     ) -> Result<(), Box<dyn Error>> {
-        if plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty()) {
+        if is_empty {
             self.notes.warnings.push("the drawing is empty: nothing is in view".into());
         }
-        self.notes.warnings.extend(alike_pens(plot));
         if self.output.strict && !self.notes.warnings.is_empty() {
             drop(self.progress);
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
@@ -196,7 +240,7 @@ impl<'a> Run<'a> {
                 messages::plain(&self.notes.summary);
             }
             let name = path.map_or("<stdout>".into(), Path::to_string_lossy);
-            messages::plain(format_args!("{name}  {paper}{}", described(plot, done.as_ref())));
+            messages::plain(format_args!("{name}  {}{}", what.paper, what.contents));
             if output.verbose {
                 tell_more(output, stats, done.as_ref());
             }
@@ -208,6 +252,12 @@ impl<'a> Run<'a> {
     }
 }
 
+/// What a file holds, for the message about it.
+struct Written<'a> {
+    paper: &'a str,
+    contents: String,
+}
+
 /// What joining and ordering did.
 struct Done {
     stats: PlotStats,
@@ -216,7 +266,7 @@ struct Done {
 }
 
 /// What each pen draws and how long it all takes.
-fn described(plot: &Plot, done: Option<&Done>) -> String {
+fn described(plot: &Plot, done: &Done) -> String {
     let mut text: String = plot
         .layers
         .iter()
@@ -231,7 +281,8 @@ fn described(plot: &Plot, done: Option<&Done>) -> String {
         })
         .collect();
     let has_lines = plot.layers.iter().any(|layer| !layer.lines.is_empty());
-    if let Some(Done { stats: PlotStats { before, after }, .. }) = done.filter(|_| has_lines) {
+    let PlotStats { before, after } = &done.stats;
+    if has_lines {
         text.push_str(&format!(", {}", brief(after)));
         if before != after {
             text.push_str(&format!(
@@ -243,6 +294,16 @@ fn described(plot: &Plot, done: Option<&Done>) -> String {
         }
     }
     text
+}
+
+/// How many strokes there are.
+fn drawing_described(drawing: &Drawing) -> String {
+    let n_hidden = drawing.iter().filter(|stroke| stroke.qi > 0).count();
+    let visible = counted(drawing.len() - n_hidden, "stroke", "strokes");
+    match n_hidden {
+        0 => format!("  visible {visible}"),
+        _ => format!("  visible {visible}  hidden {}", counted(n_hidden, "stroke", "strokes")),
+    }
 }
 
 fn brief(work: &PenWork) -> String {
@@ -260,33 +321,6 @@ fn duration(minutes: f64) -> String {
     } else {
         format!("{} h {} min", (whole / 60.0).floor(), whole % 60.0)
     }
-}
-
-/// The largest scale at which nothing of a drawing is cut off, as it is typed, if a scale was given.
-fn largest_scale(
-    drawing: &Drawing,
-    camera: &Camera,
-    options: &PageOptions,
-    unit_mm: f64,
-) -> Option<String> {
-    let Placement::Scale { mm_per_unit } = options.placement else { return None };
-    let at = |placement| {
-        let page = Page::new(drawing, camera, &PageOptions { placement, ..*options });
-        page.ok().map(|page| page.mm_per_image_unit())
-    };
-    let scale = at(Placement::Fit)? / at(options.placement)? * mm_per_unit / unit_mm;
-    // Rounded down to three digits, so that it does fit.
-    let rounded = |x: f64, up: bool| {
-        let power = libm::pow(10.0, libm::floor(libm::log10(x)) - 2.0);
-        let digits = if up { (x / power).ceil() } else { (x / power).floor() };
-        // Dividing by a whole number rounds once.
-        if power < 1.0 { digits / libm::round(1.0 / power) } else { digits * power }
-    };
-    if !(scale > 0.0 && scale.is_finite()) {
-        return None;
-    }
-    let (large, small) = (rounded(scale, false), rounded(1.0 / scale, true));
-    Some(if scale >= 1.0 { format!("{large}:1") } else { format!("1:{small}") })
 }
 
 /// What `--verbose` tells.

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use hiddenline::draw::DrawOptions;
-use hiddenline::optimize::{Effort, Options, estimate, optimize, split_by_distance};
+use hiddenline::optimize::estimate::{self, PenWork};
+use hiddenline::optimize::{Effort, Options, optimize, split_by_distance};
 use hiddenline::page::{Drawn, PenRule};
 use hiddenline::plot::{Pen, Plot};
-use hiddenline::stats::{PenWork, PlotStats};
 use hiddenline::write::Format;
 
 use super::machine::{MachineError, Target};
+use super::stats::PlotStats;
 use super::values::{self, PenText};
 
 /// Colors of pens of which none is said, by number.

@@ -12,7 +12,6 @@ use hiddenline::camera::Projection;
 use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::shading::preview::{self, PreviewError, PreviewOptions};
-use hiddenline::stats::peak_bytes;
 use hiddenline::write::Format;
 
 use self::picture::PictureArgs;
@@ -23,6 +22,7 @@ use super::paper::start_threads;
 use super::paths::is_dash;
 use super::progress::Progress;
 use super::scene::Subject;
+use super::stats::peak_bytes;
 use super::{Refused, messages, output};
 
 const EXAMPLES: &str = "\
@@ -146,13 +146,16 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let edges = job.edges.map(|lines| {
         let options = DrawOptions { lines, ..DrawOptions::default() };
         let scale = job.options.pixel_map(&scene, &camera).scale;
-        // What is a millimetre on paper is about four pixels here.
-        draw(&scene, &camera, &options, |_| scale / 4.0, &mut stats)
+        // What is a millimeter on paper is about four pixels here.
+        let drawn = draw(&scene, &camera, &options, scale / 4.0);
+        stats.add(&drawn);
+        drawn.drawing
     });
     progress.stage("shading");
     let mut seconds = stats.seconds;
-    let write = |out: &mut dyn io::Write| {
-        preview::write(&scene, &camera, &job.options, edges.as_ref(), out, &mut seconds)
+    let write = |out: &mut dyn io::Write| -> Result<(), PreviewError> {
+        seconds += preview::write(&scene, &camera, &job.options, edges.as_ref(), out)?;
+        Ok(())
     };
     match &job.path {
         Some(path) => output::write_to_file(path, write)
@@ -174,8 +177,6 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     }
     if job.stats {
         stats.count(&scene);
-        stats.strokes = edges.as_ref().map_or(0, |edges| edges.len());
-        stats.points = edges.as_ref().map_or(0, |edges| edges.n_points());
         stats.peak_bytes = peak_bytes();
         let mut stats = serde_json::to_value(&stats)?;
         stats["engine"] = job.engine.clone().into();

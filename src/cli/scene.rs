@@ -6,12 +6,13 @@ use hiddenline::camera::Camera;
 use hiddenline::classify::LineSelection;
 use hiddenline::model::mesh::Mesh;
 use hiddenline::model::scene::Scene;
-use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::StrokeKind;
+use hiddenline::timing::timed;
 
 use super::camera::ViewSource;
 use super::paper::Notes;
 use super::progress::Progress;
+use super::stats::Stats;
 
 /// What is drawn: a scene, from where it is looked at, and what reading it has to tell.
 pub(super) struct Subject {

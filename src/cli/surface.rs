@@ -8,20 +8,19 @@ mod smoothness;
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
-use hiddenline::axes::{Titles, dress, missing};
+use hiddenline::axes::{Titles, axes, missing};
 use hiddenline::camera::{Camera, Projection};
-use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines};
+use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines, meshed};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
-    CellOrder, GridPieces, Lines, SurfaceError, SurfaceSide, floating_horizon, max_min, meshed,
-    strokes,
+    CellOrder, GridPieces, Lines, SurfaceError, SurfaceSide, floating_horizon, max_min, strokes,
 };
 use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
-use hiddenline::stats::{Stats, timed};
 use hiddenline::strokes::Drawing;
 use hiddenline::surface::{Grid, LatticeLines, LinedScene};
+use hiddenline::timing::timed;
 use hiddenline::write::Format;
 
 pub(super) use self::args::SurfaceArgs;
@@ -32,7 +31,8 @@ use self::sheets::{NO_CELLS, Surface};
 use self::smoothness::Sampled;
 use super::camera::ViewSource;
 use super::output::OutputOptions;
-use super::paper::Run;
+use super::paper::{Run, Sheet};
+use super::stats::Stats;
 use super::{config, source};
 
 /// Most triangles that a mesh engine is given: about 3 GB of memory.
@@ -90,36 +90,45 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     run.progress.stage("drawing");
     let grid = surface.only_grid(job, &camera)?;
-    let mut drawing = match grid {
-        Some(grid) => draw_by_grid(job, grid, &lines, &camera, stats)?,
-        None if job.order.is_some() => {
-            return Err(
-                "--order needs one surface z = f(x, y) over a rectangle without holes, drawn \
-                        with grid lines only: leave --order out"
-                    .into(),
-            );
-        }
-        None => draw_by_mesh(job, &surface, factor, &lines, &camera, stats)?,
+    if grid.is_none() && job.order.is_some() {
+        return Err("--order needs one surface z = f(x, y) over a rectangle without holes, drawn \
+                    with grid lines only: leave --order out"
+            .into());
+    }
+    let scene = match grid {
+        Some(_) => None,
+        None => Some(timed(&mut stats.seconds.topology, || lined(job, &surface, factor, &lines))?),
     };
-    run.notes.warnings.extend(crowding(job, &drawing, &camera));
+    let extent = match &scene {
+        Some(lined) => lined.scene.extent(&camera),
+        None => surface.extent(&camera),
+    };
+    let around = job.titles.as_ref().map(|titles| axes(&extent, bounds, factor, &camera, titles));
+    let around = around.unwrap_or_default();
+    let sheet = Sheet::new(extent.union(around.extent(&camera)), camera, &job.page)?;
+    let mut drawing = match (grid, &scene) {
+        (Some(grid), _) => draw_by_grid(job, grid, &lines, &camera, stats)?,
+        (None, Some(scene)) => draw_by_mesh(job, scene, &sheet, stats)?,
+        (None, None) => Drawing::default(),
+    };
+    run.notes.warnings.extend(crowding(job, &drawing, &sheet.page));
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
-        dress(&mut drawing, bounds, factor, &camera, titles);
+        drawing.append(&around);
         run.notes.warnings.extend(unknown_letters(titles));
     }
     let usual = joining(&drawing, grid.is_some(), &camera);
     stats.strokes = drawing.len();
     stats.points = drawing.n_points();
     run.notes.summary = format!("{}: {}", job.sheets.title(), surface.described());
-    run.draw(&drawing, &camera, &job.page, plot_options(job), &usual)
+    run.draw(&drawing, &sheet, plot_options(job), &usual)
 }
 
 /// A warning when lines are so close that they flow into each other.
-fn crowding(job: &Job, drawing: &Drawing, camera: &Camera) -> Option<String> {
+fn crowding(job: &Job, drawing: &Drawing, page: &Page) -> Option<String> {
     let has_families = job.lines.along_x || job.lines.along_y;
     if job.lines.separate || !has_families || job.output.format == Format::Json {
         return None;
     }
-    let page = Page::new(drawing, camera, &job.page).ok()?;
     let (low, high) = drawing.bounds()?;
     let size_mm = (high - low) * page.mm_per_image_unit();
     let pairs = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
@@ -222,15 +231,13 @@ fn draw_by_grid(
     Ok(drawing)
 }
 
-fn draw_by_mesh(
+/// The surface as a scene, with its grid lines and level curves.
+fn lined(
     job: &Job,
     surface: &Surface,
     factor: f64,
     lines: &Lines,
-    camera: &Camera,
-    stats: &mut Stats,
-) -> Result<Drawing, Box<dyn Error>> {
-    let mut seconds = stats.seconds;
+) -> Result<LinedScene, Box<dyn Error>> {
     let lattice = LatticeLines {
         along_rows: lines.along_x,
         along_columns: lines.along_y,
@@ -250,28 +257,33 @@ fn draw_by_mesh(
     };
     let n_triangles = 2 * surface.lattices().iter().map(cells).sum::<u64>();
     too_many(n_triangles).map_or(Ok(()), Err)?;
-    let scene = timed(&mut seconds.topology, || -> Result<_, Box<dyn Error>> {
-        let mut mesh = surface.lined(&lattice);
-        if mesh.n_triangles() == 0 {
-            return Err(NO_CELLS.into());
-        }
-        if let Some(levels) = &job.levels {
-            let (low, high) = surface.bounds();
-            let n = |count: u16| f64::from(count) + 1.0;
-            let heights: Vec<f64> = match levels {
-                Levels::Count(count) => (1..=*count)
-                    .map(|k| low.z + (high.z - low.z) * f64::from(k) / n(*count))
-                    .collect(),
-                Levels::At(heights) => heights.iter().map(|z| z * factor).collect(),
-            };
-            too_many(mesh.n_pieces_with_levels(&heights)).map_or(Ok(()), Err)?;
-            mesh.add_levels(&heights);
-        }
-        let LinedScene { scene, lines } = mesh.into_scene()?;
-        let scene = if job.intersections { scene.with_intersections() } else { scene };
-        Ok(LinedScene { scene, lines })
-    })?;
-    stats.seconds = seconds;
+    let mut mesh = surface.lined(&lattice);
+    if mesh.n_triangles() == 0 {
+        return Err(NO_CELLS.into());
+    }
+    if let Some(levels) = &job.levels {
+        let (low, high) = surface.bounds();
+        let n = |count: u16| f64::from(count) + 1.0;
+        let heights: Vec<f64> = match levels {
+            Levels::Count(count) => {
+                (1..=*count).map(|k| low.z + (high.z - low.z) * f64::from(k) / n(*count)).collect()
+            }
+            Levels::At(heights) => heights.iter().map(|z| z * factor).collect(),
+        };
+        too_many(mesh.n_pieces_with_levels(&heights)).map_or(Ok(()), Err)?;
+        mesh.add_levels(&heights);
+    }
+    let LinedScene { scene, lines } = mesh.into_scene()?;
+    let scene = if job.intersections { scene.with_intersections() } else { scene };
+    Ok(LinedScene { scene, lines })
+}
+
+fn draw_by_mesh(
+    job: &Job,
+    scene: &LinedScene,
+    sheet: &Sheet,
+    stats: &mut Stats,
+) -> Result<Drawing, String> {
     let options = meshed::MeshedOptions {
         engine: match job.engine {
             EngineName::Roberts => Engine::Roberts,
@@ -286,17 +298,17 @@ fn draw_by_mesh(
         apart_by_kind: job.output.format == Format::Json,
         shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
     };
-    let mm_per_unit = |drawing: &Drawing| {
-        Page::new(drawing, camera, &job.page).map_or(1.0, |page| page.mm_per_image_unit())
-    };
-    let drawing = meshed::draw(&scene, camera, &options, mm_per_unit, stats);
-    if job.engine == EngineName::MaxMin && stats.engine != max_min::NAME {
+    let scale = sheet.page.mm_per_image_unit();
+    let drawn = meshed::draw(scene, &sheet.camera, &options, scale);
+    stats.count(&scene.scene);
+    stats.add(&drawn);
+    if job.engine == EngineName::MaxMin && drawn.engine != max_min::NAME {
         return Err("max-min draws one surface z = f(x, y) without holes over a convex part of \
                     the plane, or two that meet along its border, seen from outside and not cut by \
                     the near plane: give --engine auto"
             .into());
     }
-    Ok(drawing)
+    Ok(drawn.drawing)
 }
 
 fn count(stats: &mut Stats, grid: &Grid, pieces: &GridPieces) {

@@ -7,6 +7,8 @@
 //!   points    vertices of the mesh    | ends of those that are no vertices
 //! ```
 
+use crate::camera::Camera;
+use crate::extent::Extent;
 use crate::model::bends::{Bend, bends};
 use crate::model::intersections::{Intersection, Intersections};
 use crate::model::mesh::Mesh;
@@ -97,6 +99,12 @@ impl Scene {
     pub fn is_bent(&self, face: u32) -> bool {
         let of = |bend: &Bend| self.triangle_faces[bend.triangles[0] as usize];
         self.bends.binary_search_by_key(&face, of).is_ok()
+    }
+
+    /// What of the image the scene takes up as `camera` sees it. O(vertices), in parallel; where the
+    /// near plane cuts or the view is very wide, O(edges).
+    pub fn extent(&self, camera: &Camera) -> Extent {
+        Extent::new(self.mesh.positions(), self.topology.edges(), camera)
     }
 
     /// The positions of all vertices, then those of constructed points, rounded.

@@ -17,10 +17,9 @@
 
 use glam::DVec2;
 use rayon::prelude::*;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::plot::{Plot, Polylines};
-use crate::stats::PenWork;
 
 /// How a machine moves; millimetres and seconds.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -108,6 +107,21 @@ pub struct Estimate {
     pub lifts: usize,
     /// Seconds from the first stroke to the last lift; changing pens not counted.
     pub seconds: f64,
+}
+
+/// What the pens do, in the units of messages and statistics.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct PenWork {
+    /// Strokes.
+    pub strokes: usize,
+    /// Length drawn in meters.
+    pub down_m: f64,
+    /// Pen-up travel between strokes in meters.
+    pub up_m: f64,
+    /// Times the pen is raised.
+    pub lifts: usize,
+    /// Estimated minutes.
+    pub minutes: f64,
 }
 
 impl Estimate {

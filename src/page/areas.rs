@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DVec2};
 
-use super::crop::Window;
 use crate::engines::face::painting::NO_LINE;
 use crate::engines::face::region::{Region, SnapGrid};
+use crate::extent::window::Window;
 use crate::plot::Fills;
 
 /// The areas on the page, and whether any was cropped.

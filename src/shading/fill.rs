@@ -27,7 +27,6 @@ use crate::plot::Fills;
 use crate::shading::light::{
     DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes,
 };
-use crate::strokes::{Drawing, StrokeKind};
 
 /// Most inks.
 pub const MOST_INKS: usize = 64;
@@ -121,20 +120,6 @@ pub struct Filled {
     pub n_pieces: usize,
     /// What the engine counted, if it was asked to find the regions.
     pub work: Option<FaceWork>,
-}
-
-impl Filled {
-    /// The borders of all areas as strokes, to place the picture by.
-    pub fn borders(&self) -> Drawing {
-        let mut drawing = Drawing::default();
-        for area in self.layers.iter().flat_map(|layer| layer.fills.iter()) {
-            for ring in area.rings() {
-                let closed = ring.iter().chain(ring.first()).copied();
-                drawing.push(StrokeKind::Silhouette, 0, closed);
-            }
-        }
-        drawing
-    }
 }
 
 /// Fills the visible regions of a scene's faces.

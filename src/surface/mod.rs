@@ -6,6 +6,7 @@ mod csv;
 mod domain;
 mod grid;
 mod height_files;
+mod lattice_extent;
 mod levels;
 mod lined_mesh;
 #[cfg(feature = "points")]
@@ -15,6 +16,7 @@ pub use csv::{CsvError, Placement, read_csv};
 pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
 pub use height_files::{HeightFileError, read_heights};
+pub use lattice_extent::lattice_extent;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
 #[cfg(feature = "points")]
 pub use points::{PointsError, delaunay, read_points};

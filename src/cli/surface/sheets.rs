@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use hiddenline::engines::surface::max_min;
+use hiddenline::extent::Extent;
 use hiddenline::model::mesh::Mesh;
 use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{
     Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
-    delaunay, evenly, read_heights, read_points,
+    delaunay, evenly, lattice_extent, read_heights, read_points,
 };
 
 use hiddenline::camera::Camera;
@@ -113,6 +114,24 @@ impl Surface {
             }
         }
         bounds
+    }
+
+    /// What of the image its lattices take up; nothing for scattered points.
+    pub(super) fn extent(&self, camera: &Camera) -> Extent {
+        let of_grid = |grid: &Grid| {
+            let sample = |k: usize| grid.point(k as u32);
+            lattice_extent(grid.xs().len(), grid.zs().len(), sample, camera)
+        };
+        match self {
+            Self::Grids(grids) => grids.iter().map(of_grid).fold(Extent::EMPTY, Extent::union),
+            Self::Trimmed { grids, .. } => {
+                grids.iter().map(|g| of_grid(g.grid())).fold(Extent::EMPTY, Extent::union)
+            }
+            Self::Lattice { n_columns, points } => {
+                lattice_extent(*n_columns, points.len(), |k| points[k], camera)
+            }
+            Self::Points { .. } => Extent::EMPTY,
+        }
     }
 
     pub(super) fn scale_heights(&mut self, factor: f64) {

@@ -11,7 +11,6 @@ use std::error::Error;
 use glam::{DVec2, DVec3};
 use hiddenline::camera::{Camera, Projection};
 use hiddenline::page::Page;
-use hiddenline::strokes::{Drawing, StrokeKind};
 
 use super::Job;
 use super::args::EngineName;
@@ -38,7 +37,7 @@ pub(super) struct Sampled {
     pub(super) camera: Camera,
     /// How many cells along each axis stand for one of the samples asked for.
     pub(super) refined: usize,
-    /// How far lines are from the function at most, in millimetres on paper; 0 when they may be as
+    /// How far lines are from the function at most, in millimeters on paper; 0 when they may be as
     /// far as they are.
     pub(super) deviation_mm: f64,
 }
@@ -91,33 +90,29 @@ fn finer(
     (needed.ceil() as usize).min(MOST_REFINED).min(affordable).max(refined)
 }
 
-/// How far lines are from the function at most, in millimetres on paper.
+/// How far lines are from the function at most, in millimeters on paper.
 fn deviation_mm(job: &Job, surface: &Surface, camera: &Camera) -> f64 {
     let projector = Projector::new(camera);
     let mut most = 0.0_f64;
-    let mut outline = Drawing::default();
     for (n_columns, n, at) in surface.lattices() {
         let n_rows = n / n_columns;
         let mut along = |n_lines: usize, n_points: usize, at: &dyn Fn(usize, usize) -> DVec3| {
             let step = n_lines.div_ceil(LINES_TESTED).max(1);
             for line in (0..n_lines).step_by(step) {
                 let mut last: [Option<DVec2>; 2] = [None; 2];
-                let mut drawn = Vec::new();
                 for k in 0..n_points {
                     let image = projector.image(at(line, k));
                     if let ([Some(a), Some(b)], Some(c)) = (last, image) {
                         most = most.max(off_chord(a, b, c) / 4.0);
                     }
                     last = [last[1], image];
-                    drawn.extend(image);
                 }
-                outline.push(StrokeKind::Grid, 0, drawn);
             }
         };
         along(n_rows, n_columns, &|line, k| at(line * n_columns + k));
         along(n_columns, n_rows, &|line, k| at(k * n_columns + line));
     }
-    let page = Page::new(&outline, camera, &job.page);
+    let page = Page::place(&surface.extent(camera), camera, &job.page);
     most * page.map_or(0.0, |page| page.mm_per_image_unit())
 }
 

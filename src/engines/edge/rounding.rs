@@ -3,7 +3,8 @@
 //! Nothing here decides visibility: whatever is in doubt counts as near.
 
 use super::segment::Segment;
-use crate::classify::{ImagePoint, ViewedScene};
+use crate::camera::ImagePoint;
+use crate::classify::ViewedScene;
 use crate::predicates::Sign;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

@@ -14,8 +14,7 @@
 
 use super::FragmentCounts;
 use super::painting::{NO_LINE, Painting};
-use crate::camera::{Camera, Frame, Projection};
-use crate::classify::ImagePoint;
+use crate::camera::{Camera, Frame, ImagePoint, Projection};
 use crate::model::scene::Scene;
 use crate::predicates::{Corner, Estimate, Place, Plane, PlaneName, Planes, Sign};
 use glam::{DVec2, DVec3};

@@ -18,8 +18,7 @@ use rayon::prelude::*;
 
 use super::depth::DepthPlane;
 use super::edge::{PixelEdge, first_center};
-use crate::camera::{Camera, Projection};
-use crate::classify::ImagePoint;
+use crate::camera::{Camera, ImagePoint, Projection};
 use crate::model::scene::Scene;
 use crate::predicates::{Sight, Sign};
 

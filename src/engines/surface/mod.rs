@@ -5,14 +5,12 @@
 //! | [`floating_horizon`] | grid lines | the nearer lines of the same family | samples + crossings |
 //! | [`max_min`] | both families of grid lines | the triangulated surface | samples + crossings |
 //! | [`tin`] | any edges of a triangulated surface over a convex domain | the triangulated surface | triangles + crossings |
-//! | [`meshed`] | any edges of any mesh | all triangles, by a line engine | as that engine |
 
 mod cells;
 pub mod floating_horizon;
 mod horizon;
 mod lines;
 pub mod max_min;
-pub mod meshed;
 mod pen_path;
 mod pieces;
 mod plan_predicates;

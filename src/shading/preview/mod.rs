@@ -27,8 +27,8 @@ use crate::engines::image::{
 };
 use crate::model::scene::Scene;
 use crate::shading::light::{DEFAULT_PAINT, to_bytes};
-use crate::stats::{Seconds, timed};
 use crate::strokes::Drawing;
+use crate::timing::{Seconds, timed};
 
 /// Columns and rows of a picture, unless set otherwise.
 pub const DEFAULT_SIZE: (u32, u32) = (1200, 900);
@@ -148,8 +148,8 @@ impl PreviewOptions {
     }
 }
 
-/// Writes a picture of `scene` as `camera` sees it, with the visible strokes of `edges` on it; times
-/// go to `seconds`.
+/// Writes a picture of `scene` as `camera` sees it, with the visible strokes of `edges` on it. Returns
+/// the wall time of classification, visibility and writing.
 ///
 /// # Errors
 /// See [`PreviewError`].
@@ -159,8 +159,8 @@ pub fn write(
     options: &PreviewOptions,
     edges: Option<&Drawing>,
     out: &mut dyn Write,
-    seconds: &mut Seconds,
-) -> Result<(), PreviewError> {
+) -> Result<Seconds, PreviewError> {
+    let mut seconds = Seconds::default();
     let (width, height) = options.size;
     let sides = 1..=LARGEST_SIDE;
     if !(sides.contains(&width) && sides.contains(&height)) {
@@ -218,7 +218,7 @@ pub fn write(
     }
     timed(&mut seconds.write, || rows.finish()).map_err(io::Error::from)?;
     timed(&mut seconds.write, || writer.finish()).map_err(io::Error::from)?;
-    Ok(())
+    Ok(seconds)
 }
 
 /// Strips made at once for each thread: more share the work better, fewer take less memory.

@@ -13,7 +13,6 @@ use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::{DrawOptions, HiddenLines, draw};
 use hiddenline::engines::edge::{Engine, Settings, solve};
 use hiddenline::model::scene::Scene;
-use hiddenline::stats::Stats;
 use hiddenline::strokes::StrokeKind;
 
 const INTERSECTIONS: LineSelection = LineSelection::NONE.with(StrokeKind::Intersection);
@@ -142,7 +141,7 @@ fn crossing_boxes_are_drawn_in_full_length_from_everywhere() {
                 shortest_stroke_mm: 0.0,
                 ..DrawOptions::default()
             };
-            let drawing = draw(&built, &camera, &options, |_| 1.0, &mut Stats::default());
+            let drawing = draw(&built, &camera, &options, 1.0).drawing;
             assert!(drawing.iter().all(|stroke| stroke.kind == StrokeKind::Intersection));
             let drawn: f64 = drawing
                 .iter()

@@ -6,7 +6,6 @@ use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::model::scene::Scene;
 use hiddenline::read::read_bytes;
-use hiddenline::stats::Stats;
 use hiddenline::strokes::{Drawing, StrokeKind};
 
 /// Six unit squares in a row along x, in one plane: materials and groups change on the way, once back
@@ -24,7 +23,7 @@ fn drawn(lines: LineSelection) -> Drawing {
         Camera::new(dvec3(2.0, -3.0, 9.0), DVec3::ZERO, DVec3::Z, Projection::Orthographic)
             .unwrap();
     let options = DrawOptions { lines, apart_by_kind: true, ..DrawOptions::default() };
-    draw(&scene, &camera, &options, |_| 100.0, &mut Stats::default())
+    draw(&scene, &camera, &options, 100.0).drawing
 }
 
 fn count(drawing: &Drawing, kind: StrokeKind) -> usize {

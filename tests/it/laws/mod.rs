@@ -5,6 +5,7 @@ mod appel;
 mod bends;
 mod closed_forms;
 mod drawings;
+mod extent;
 pub(crate) mod engines;
 mod intersections;
 mod invariance;

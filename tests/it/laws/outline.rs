@@ -8,7 +8,6 @@ use hiddenline::classify::{LineSelection, ViewedScene};
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::edge::outline;
 use hiddenline::model::scene::Scene;
-use hiddenline::stats::Stats;
 use hiddenline::strokes::{Drawing, StrokeKind};
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -105,7 +104,7 @@ fn nothing_of_the_true_outline_is_left_out() {
 fn drawing(scene: &TestScene, lines: LineSelection) -> Drawing {
     let options = DrawOptions { lines, apart_by_kind: true, ..DrawOptions::default() };
     let built = Scene::new(mesh(scene));
-    draw(&built, &camera(scene), &options, |_| 100.0, &mut Stats::default())
+    draw(&built, &camera(scene), &options, 100.0).drawing
 }
 
 fn length(drawing: &Drawing, outline: bool) -> f64 {

@@ -8,7 +8,6 @@ use hiddenline::engines::edge::{Engine, Settings, solve};
 use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::model::scene::Scene;
 use hiddenline::predicates::Sign;
-use hiddenline::stats::Stats;
 use hiddenline::strokes::Drawing;
 
 const BOX_FACES: [[u32; 4]; 6] =
@@ -45,7 +44,7 @@ fn orthographic(eye: DVec3, up: DVec3) -> Camera {
 }
 
 fn drawn(scene: &Scene, camera: &Camera, options: &DrawOptions) -> Drawing {
-    draw(scene, camera, options, |_| 100.0, &mut Stats::default())
+    draw(scene, camera, options, 100.0).drawing
 }
 
 fn length(points: &[DVec2]) -> f64 {

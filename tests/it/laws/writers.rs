@@ -45,7 +45,9 @@ fn options(hidden: HiddenLines) -> PlotOptions {
 }
 
 fn placed(drawing: &Drawing, camera: &Camera, page: &PageOptions) -> PlacedPlot {
-    Page::new(drawing, camera, page).expect("fits").plot(drawing, options(HiddenLines::None))
+    Page::place(&drawing.extent(camera), camera, page)
+        .expect("fits")
+        .plot(drawing, options(HiddenLines::None))
 }
 
 fn first_line(placed: &PlacedPlot) -> Vec<DVec2> {
@@ -136,7 +138,9 @@ fn the_field_of_view_fills_the_height_and_the_rest_is_cropped() {
 fn points_far_out_do_not_shrink_a_perspective_drawing() {
     let far_out =
         drawing(&[&[dvec2(-0.2, 0.0), dvec2(0.2, 0.0)], &[dvec2(0.0, 0.0), dvec2(0.0, 1e6)]]);
-    let page = Page::new(&far_out, &perspective(), &PageOptions::default()).expect("fits");
+    let page =
+        Page::place(&far_out.extent(&perspective()), &perspective(), &PageOptions::default())
+            .expect("fits");
     // The line is cropped at 60°, so the box is √3 high, on 277 mm.
     assert!((page.mm_per_image_unit() - 277.0 / 3_f64.sqrt()).abs() < 1e-6);
 }
@@ -144,7 +148,7 @@ fn points_far_out_do_not_shrink_a_perspective_drawing() {
 #[test]
 fn margins_wider_than_the_page_are_an_error() {
     let options = PageOptions { margin_mm: 105.0, ..PageOptions::default() };
-    let page = Page::new(&Drawing::default(), &orthographic(), &options);
+    let page = Page::place(&Drawing::default().extent(&orthographic()), &orthographic(), &options);
     assert!(matches!(page, Err(PageError::Margins { .. })), "{page:?}");
 }
 
@@ -153,7 +157,9 @@ fn dashes_are_real_segments_on_the_hidden_layer() {
     let mut drawing = Drawing::default();
     drawing.push(StrokeKind::Crease, 0, [dvec2(0.0, 0.0), dvec2(4.0, 0.0)]);
     drawing.push(StrokeKind::Crease, 2, [dvec2(0.0, 1.0), dvec2(4.0, 1.0)]);
-    let page = Page::new(&drawing, &orthographic(), &PageOptions::default()).expect("fits");
+    let page =
+        Page::place(&drawing.extent(&orthographic()), &orthographic(), &PageOptions::default())
+            .expect("fits");
     let plot = page.plot(&drawing, options(HiddenLines::Dashed)).plot;
     let names: Vec<_> = plot.layers.iter().map(|layer| (layer.number, &*layer.name)).collect();
     assert_eq!(names, [(1, "visible"), (2, "hidden")]);
@@ -232,7 +238,8 @@ fn json_numbers_read_back_as_they_were() {
     let mut drawing = Drawing::default();
     drawing.push(StrokeKind::Silhouette, 0, points);
     drawing.push(StrokeKind::Mesh, 3, points);
-    let page = Page::new(&self::drawing(&[]), &camera, &PageOptions::default()).expect("fits");
+    let page = Page::place(&self::drawing(&[]).extent(&camera), &camera, &PageOptions::default())
+        .expect("fits");
     let mut bytes = Vec::new();
     json::write(&drawing, &camera, page.page_from_image, &mut bytes).expect("memory");
     let text = String::from_utf8(bytes).expect("text");

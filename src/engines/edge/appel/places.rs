@@ -3,7 +3,8 @@
 use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::box_join::{Lattice, LatticeBox, Place, box_of_all};
-use crate::classify::{ImagePoint, ViewedScene};
+use crate::camera::ImagePoint;
+use crate::classify::ViewedScene;
 use crate::predicates::Viewpoint;
 use glam::DVec3;
 use rayon::prelude::*;

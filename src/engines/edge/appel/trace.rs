@@ -21,7 +21,8 @@ use super::super::shadow::{Shadow, Sides, shadow, side_of};
 use super::box_join::Pairs;
 use super::cutting::CuttingEdge;
 use super::start::add;
-use crate::classify::{ImagePoint, ViewedScene};
+use crate::camera::ImagePoint;
+use crate::classify::ViewedScene;
 use crate::predicates::{Cut, CutPlane, Estimate, Sign};
 use std::cmp::Ordering;
 

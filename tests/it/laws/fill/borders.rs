@@ -12,7 +12,6 @@ use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::face::images::Images;
 use hiddenline::engines::face::weiler_atherton::solve;
 use hiddenline::model::scene::Scene;
-use hiddenline::stats::Stats;
 use hiddenline::strokes::StrokeKind;
 
 type Segment = [DVec2; 2];
@@ -22,7 +21,7 @@ fn strokes(scene: Scene, camera: &Camera) -> Vec<Segment> {
     let lines = LineSelection::all_edges().with(StrokeKind::Intersection);
     let options = DrawOptions { lines, exact: true, ..DrawOptions::default() };
     let scene = scene.with_intersections();
-    let drawing = draw(&scene, camera, &options, |_| 1.0, &mut Stats::default());
+    let drawing = draw(&scene, camera, &options, 1.0).drawing;
     drawing.iter().map(|stroke| [stroke.points[0], stroke.points[1]]).collect()
 }
 

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3, dvec2};
 use hiddenline::camera::Camera;
 use hiddenline::camera::framing::Framing;
 use hiddenline::engines::face::FaceEngine;
+use hiddenline::extent::Extent;
 use hiddenline::model::scene::Scene;
 use hiddenline::page::{Dash, Page, PageOptions, Placement, PlotOptions};
 use hiddenline::plot::{Fills, Plot};
@@ -31,7 +32,10 @@ fn area(fills: &Fills) -> f64 {
 }
 
 fn plot(filled: &Filled, camera: &Camera, options: &PageOptions, seam_mm: f64) -> (Plot, bool) {
-    let page = Page::new(&filled.borders(), camera, options).unwrap();
+    let areas = || filled.layers.iter().flat_map(|layer| layer.fills.iter());
+    let rings: Vec<&[DVec2]> = areas().flat_map(|area| area.rings()).collect();
+    let extent = Extent::of_polylines(rings.iter().copied(), camera);
+    let page = Page::place(&extent, camera, options).unwrap();
     let plot = PlotOptions {
         pen_width_mm: 0.3,
         pens: Vec::new(),

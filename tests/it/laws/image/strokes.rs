@@ -10,7 +10,6 @@ use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, draw};
 use hiddenline::engines::image::{ImageEngine, solve};
 use hiddenline::model::scene::Scene;
-use hiddenline::stats::Stats;
 
 #[test]
 fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {
@@ -38,7 +37,7 @@ fn check(name: &str, scene: &Scene, camera: &Camera) {
 
     let options =
         DrawOptions { lines: LineSelection::all_edges(), exact: true, ..DrawOptions::default() };
-    let drawing = draw(scene, camera, &options, |_| 1.0, &mut Stats::default());
+    let drawing = draw(scene, camera, &options, 1.0).drawing;
     let mut is_near_stroke = vec![false; faces.len()];
     let (mut n_points, mut n_strokes) = (0, 0);
     for stroke in drawing.iter().filter(|stroke| stroke.qi == 0) {

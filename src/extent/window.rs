@@ -1,22 +1,22 @@
-//! Cutting polylines at the border of a rectangle (Liang and Barsky's parametric clipping).
+//! Clipping polylines to a rectangle (Liang and Barsky's parametric clipping).
 
 use glam::DVec2;
 
-/// What of the page may be drawn on.
-pub(super) struct Window {
+/// A rectangle that polylines are clipped to.
+pub(crate) struct Window {
     /// Lowest corner.
-    pub(super) low: DVec2,
+    pub(crate) low: DVec2,
     /// Highest corner.
-    pub(super) high: DVec2,
+    pub(crate) high: DVec2,
     /// Points outside by less than this are moved onto the border.
-    pub(super) slack: f64,
+    pub(crate) slack: f64,
 }
 
 impl Window {
-    /// Hands the pieces of a polyline within the window to `emit`; says whether anything was cut.
+    /// Calls `emit` with each piece of a polyline within the window; returns whether anything was cut.
     ///
     /// A closed polyline that begins inside is not torn apart at its first point.
-    pub(super) fn crop(&self, points: &mut [DVec2], mut emit: impl FnMut(&[DVec2])) -> bool {
+    pub(crate) fn crop(&self, points: &mut [DVec2], mut emit: impl FnMut(&[DVec2])) -> bool {
         let (low, high) = (self.low - self.slack, self.high + self.slack);
         if points.iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()) {
             for p in points.iter_mut() {
@@ -66,8 +66,8 @@ impl Window {
         true
     }
 
-    /// Where on the way from `from` to `to` the window, with its slack, is entered and left.
-    fn part_inside(&self, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
+    /// Where a segment enters and leaves the window with its slack, as parameters from 0 to 1.
+    pub(crate) fn part_inside(&self, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
         let (low, high) = (self.low - self.slack, self.high + self.slack);
         let along = to - from;
         if !along.is_finite() {

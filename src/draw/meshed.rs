@@ -1,17 +1,17 @@
-//! Surfaces of triangles: by [`tin`] where that can, else by the mesh engines, which also draw what
-//! has holes, several sheets, or any shape in space.
+//! Surfaces of triangles: by [`tin`] where possible, otherwise by the mesh engines, which also draw
+//! surfaces with holes, several sheets, and any shape in space.
 
-use super::max_min::NAME;
-use super::tin;
+use super::Drawn;
 use crate::camera::Camera;
-use crate::chain::{ChainOptions, chain, shortest};
+use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{Counts, Engine, Settings, solve};
+use crate::engines::surface::{max_min, tin};
 use crate::engines::visibility::Visibility;
 use crate::predicates::Sign;
-use crate::stats::{Stats, timed};
-use crate::strokes::{Drawing, StrokeKind};
+use crate::strokes::StrokeKind;
 use crate::surface::LinedScene;
+use crate::timing::{Seconds, timed};
 
 /// How a surface is drawn by a mesh engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,70 +33,45 @@ pub struct MeshedOptions {
     pub underside: bool,
     /// Join only pieces of one kind.
     pub apart_by_kind: bool,
-    /// Visible strokes shorter than this are dropped, in millimetres on paper.
+    /// Visible strokes shorter than this are dropped, in millimeters on paper.
     pub shortest_stroke_mm: f64,
 }
 
-/// Draws the lines of a surface as `camera` sees them; counts and times go to `stats`.
+/// Draws the lines of a surface as `camera` sees them.
 ///
-/// The visible parts are exact for the triangles. `mm_per_unit` tells how many millimetres on paper
-/// an image unit becomes for a drawing with the given strokes.
+/// The visible parts are exact for the triangles. `mm_per_unit` is the number of millimeters on paper
+/// for one image unit, as for [`draw`](super::draw).
 pub fn draw(
     surface: &LinedScene,
     camera: &Camera,
     options: &MeshedOptions,
-    mm_per_unit: impl FnOnce(&Drawing) -> f64,
-    stats: &mut Stats,
-) -> Drawing {
-    let LinedScene { scene, lines } = surface;
-    let view = timed(&mut stats.seconds.classify, || {
-        let mut edges = lines.clone();
-        let mut selection = LineSelection::NONE;
-        for (is_wanted, kind) in [
-            (options.folds, StrokeKind::Silhouette),
-            (options.border, StrokeKind::Boundary),
-            (options.intersections, StrokeKind::Intersection),
-            (options.intersections, StrokeKind::Nonmanifold),
-        ] {
-            if is_wanted {
-                selection = selection.with(kind);
-            }
-        }
-        if selection != LineSelection::NONE {
-            let of_the_view = ViewedScene::new(scene, camera, selection, DEFAULT_CREASE_DEG);
-            edges.extend_from_slice(of_the_view.drawn());
-        }
-        ViewedScene::with_edges(scene, camera, edges)
-    });
+    mm_per_unit: f64,
+) -> Drawn {
+    let mut seconds = Seconds::default();
+    let view = timed(&mut seconds.classify, || view(surface, camera, options));
     let settings =
         Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: !options.exact };
     let mut n_exact = 0;
-    let (visibility, counts, engine) = timed(&mut stats.seconds.visibility, || {
+    let (visibility, counts, engine) = timed(&mut seconds.visibility, || {
         let by_horizons = if options.engine == Engine::Auto { tin::solve(&view) } else { None };
         match by_horizons {
             Some((visibility, work)) => {
                 n_exact = work.exact;
                 let candidate_pairs = work.comparisons;
-                (visibility, Counts { candidate_pairs, ..Counts::default() }, NAME)
+                (visibility, Counts { candidate_pairs, ..Counts::default() }, max_min::NAME)
             }
             None => solve(&view, options.engine, &settings),
         }
     });
-    stats.engine = engine;
-    stats.count(scene);
-    stats.drawn_edges = view.drawn().len();
-    stats.counts.candidate_pairs = counts.candidate_pairs;
-    stats.counts.exact_predicates = view.sight().n_exact() + n_exact;
-    timed(&mut stats.seconds.strokes, || {
-        let mut chaining = ChainOptions {
-            hidden: false,
-            hidden_levels: None,
-            exact: options.exact,
-            apart_by_kind: options.apart_by_kind,
-            shortest: 0.0,
-        };
-        let shortest_mm = options.shortest_stroke_mm;
-        chaining.shortest = shortest(&view, &visibility, None, &chaining, shortest_mm, mm_per_unit);
+    n_exact += view.sight().n_exact();
+    let chaining = ChainOptions {
+        hidden: false,
+        hidden_levels: None,
+        exact: options.exact,
+        apart_by_kind: options.apart_by_kind,
+        shortest: if options.exact { 0.0 } else { options.shortest_stroke_mm / mm_per_unit },
+    };
+    let drawing = timed(&mut seconds.strokes, || {
         if !options.underside {
             return chain(&view, &visibility, None, &chaining);
         }
@@ -105,7 +80,31 @@ pub fn draw(
         let mut drawing = upper;
         drawing.append_undersides(&lower);
         drawing
-    })
+    });
+    let n_lines = view.drawn().len();
+    Drawn { drawing, engine, n_lines, counts, n_exact, seconds }
+}
+
+/// The surface with its own lines and those of the view that the options ask for.
+fn view<'a>(surface: &'a LinedScene, camera: &Camera, options: &MeshedOptions) -> ViewedScene<'a> {
+    let LinedScene { scene, lines } = surface;
+    let mut edges = lines.clone();
+    let mut selection = LineSelection::NONE;
+    for (is_wanted, kind) in [
+        (options.folds, StrokeKind::Silhouette),
+        (options.border, StrokeKind::Boundary),
+        (options.intersections, StrokeKind::Intersection),
+        (options.intersections, StrokeKind::Nonmanifold),
+    ] {
+        if is_wanted {
+            selection = selection.with(kind);
+        }
+    }
+    if selection != LineSelection::NONE {
+        let of_the_view = ViewedScene::new(scene, camera, selection, DEFAULT_CREASE_DEG);
+        edges.extend_from_slice(of_the_view.drawn());
+    }
+    ViewedScene::with_edges(scene, camera, edges)
 }
 
 /// The spans of edges seen from above, and of those seen from below.
