@@ -180,7 +180,7 @@ fn pieces(
             let (mut spans, mut parts) = (Vec::new(), Vec::<[f64; 2]>::new());
             let deepest = options.hidden_levels.unwrap_or(u32::MAX);
             for (i, drawn) in drawn.iter().enumerate() {
-                let ends = view.scene().line(drawn.edge);
+                let ends = view.line(drawn.edge);
                 let images = ends.map(|end| view.image()[end as usize]);
                 let at = |t: f64| {
                     // Ends are taken as they are, so that joined pieces share the very point.

@@ -12,6 +12,7 @@
 //! | material | 2 | between two materials or groups; only when asked for |
 //! | mesh | any | |
 //! | intersection | none | the line in which two faces cross |
+//! | wire | none | a polyline of the model that borders no face |
 //!
 //! A bend of a face, where the scene knows of any (see [`crate::model::bends`]), is a silhouette where one
 //! of the triangles along it faces the eye and the other does not.
@@ -21,10 +22,10 @@
 
 use crate::camera::{Camera, ImagePoint};
 use crate::model::mesh::Mesh;
-use crate::model::scene::Scene;
+use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
 use crate::model::triangulate::newell_normal;
-use crate::predicates::{Sight, Sign, exact};
+use crate::predicates::{PiercePoint, Sight, Sign, exact};
 use crate::strokes::StrokeKind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -92,7 +93,7 @@ impl LineSelection {
 }
 
 impl Default for LineSelection {
-    /// Silhouette, crease, boundary, non-manifold and intersection lines.
+    /// Silhouette, crease, boundary, non-manifold and intersection lines, and wires.
     fn default() -> Self {
         Self::NONE
             .with(StrokeKind::Silhouette)
@@ -100,17 +101,59 @@ impl Default for LineSelection {
             .with(StrokeKind::Boundary)
             .with(StrokeKind::Nonmanifold)
             .with(StrokeKind::Intersection)
+            .with(StrokeKind::Wire)
     }
 }
 
 /// An edge that is to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DrawnEdge {
-    /// Its number in the topology, or that of a line of intersection; see
-    /// [`Scene::line`](crate::model::scene::Scene::line).
+    /// Its number among the lines of the view; see [`ViewedScene::line`].
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,
+}
+
+/// Points and segments that belong to a view, not to the scene: hatching, cuts by planes, contours of
+/// smooth surfaces.
+///
+/// Points that are vertices or ends of lines of the scene keep their numbers; further ones are exact
+/// points in which an edge meets a face. A segment hides nothing. Where it lies in a face's plane,
+/// that face does not hide it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewSegments {
+    /// The scene's points, then those of the view, rounded.
+    points: Vec<DVec3>,
+    /// All that are not vertices, exact.
+    constructed: Vec<PiercePoint>,
+    ends: Vec<[u32; 2]>,
+    kinds: Vec<StrokeKind>,
+}
+
+impl ViewSegments {
+    /// No segments yet, for views of `scene`. O(points).
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            points: scene.points().to_vec(),
+            constructed: scene.intersections().points().to_vec(),
+            ends: Vec::new(),
+            kinds: Vec::new(),
+        }
+    }
+
+    /// Adds a point and returns its number.
+    pub fn push_point(&mut self, point: PiercePoint) -> u32 {
+        self.points.push(point.rounded());
+        self.constructed.push(point);
+        self.points.len() as u32 - 1
+    }
+
+    /// Adds a segment between two points. Panics when there is no such point.
+    pub fn push(&mut self, ends: [u32; 2], kind: StrokeKind) {
+        assert!(ends.iter().all(|&end| (end as usize) < self.points.len()), "no such point");
+        self.ends.push(ends);
+        self.kinds.push(kind);
+    }
 }
 
 /// A scene as one camera sees it, with the edges that are to be drawn.
@@ -127,6 +170,7 @@ pub struct ViewedScene<'a> {
     /// Those of `drawn` of which only the outline is wanted.
     only_outline: Vec<u32>,
     near_plane_cuts: bool,
+    own: Option<&'a ViewSegments>,
 }
 
 impl<'a> ViewedScene<'a> {
@@ -136,12 +180,37 @@ impl<'a> ViewedScene<'a> {
     /// An edge is selected by any kind that applies to it, and bears the first. Edges whose image
     /// is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
+        Self::with(scene, camera, lines, crease_deg, None)
+    }
+
+    /// The same with segments of the view's own, of which all are drawn. They follow the lines of the
+    /// scene.
+    pub fn with_segments(
+        scene: &'a Scene,
+        camera: &Camera,
+        lines: LineSelection,
+        crease_deg: f64,
+        segments: &'a ViewSegments,
+    ) -> Self {
+        Self::with(scene, camera, lines, crease_deg, Some(segments))
+    }
+
+    fn with(
+        scene: &'a Scene,
+        camera: &Camera,
+        lines: LineSelection,
+        crease_deg: f64,
+        own: Option<&'a ViewSegments>,
+    ) -> Self {
         let positions = scene.mesh().positions();
-        let constructed = scene.intersections().points();
-        let sight = Sight::with_pierced(scene.points(), constructed, camera);
+        let (points, constructed) = match own {
+            Some(own) => (&own.points[..], &own.constructed[..]),
+            None => (scene.points(), scene.intersections().points()),
+        };
+        let sight = Sight::with_pierced(points, constructed, camera);
         let (eye, frame) = (camera.eye(), camera.frame());
         let image = |d: DVec3| ImagePoint::new(d, camera, &frame);
-        let mut images: Vec<ImagePoint> = Vec::with_capacity(scene.points().len());
+        let mut images: Vec<ImagePoint> = Vec::with_capacity(points.len());
         images.par_extend(positions.par_iter().map(|&p| image(p - eye)));
         // With the rest of what is rounded they are as good as images of vertices.
         let constructed = constructed.par_iter();
@@ -168,6 +237,7 @@ impl<'a> ViewedScene<'a> {
             drawn: Vec::new(),
             only_outline: Vec::new(),
             near_plane_cuts,
+            own,
         };
         let selected = view.select(lines, crease_deg);
         let only_outline = selected.iter().filter(|(_, is_whole)| !is_whole);
@@ -186,7 +256,7 @@ impl<'a> ViewedScene<'a> {
         edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
         edges.dedup_by_key(|drawn| drawn.edge);
         edges.retain(|drawn| {
-            let [a, b] = scene.line(drawn.edge);
+            let [a, b] = view.line(drawn.edge);
             !view.sight.same_image(a, b)
         });
         view.drawn = edges;
@@ -196,6 +266,18 @@ impl<'a> ViewedScene<'a> {
     /// The scene.
     pub fn scene(&self) -> &'a Scene {
         self.scene
+    }
+
+    /// The ends of a line of the scene, or of a segment of the view's own, as numbers of points.
+    /// Panics when there is no such line.
+    #[inline]
+    pub fn line(&self, line: u32) -> [u32; 2] {
+        match self.own {
+            Some(own) if line as usize >= self.scene.n_lines() => {
+                own.ends[line as usize - self.scene.n_lines()]
+            }
+            _ => self.scene.line(line),
+        }
     }
 
     /// The camera.
@@ -224,7 +306,8 @@ impl<'a> ViewedScene<'a> {
         facings[face as usize]
     }
 
-    /// The edges to draw, in the order of the topology, then the lines of intersection, then bends.
+    /// What to draw, by number: edges in the order of the topology, then the other lines of the scene,
+    /// then the segments of the view's own.
     pub fn drawn(&self) -> &[DrawnEdge] {
         &self.drawn
     }
@@ -267,27 +350,52 @@ impl<'a> ViewedScene<'a> {
                 (!self.sight.same_image(a, b)).then_some(drawn)
             })
             .collect();
-        if lines.contains(StrokeKind::Intersection) {
-            let crossings = self.intersections(&drawn);
-            drawn.extend(crossings.into_iter().map(|crossing| (crossing, true)));
-        }
-        let is_whole = lines.contains(StrokeKind::Silhouette);
-        if is_whole || lines.has_outline() {
-            drawn.extend(self.bends().into_iter().map(|bend| (bend, is_whole)));
+        let others = self.other_lines(lines, &drawn);
+        drawn.extend(others);
+        if let Some(own) = self.own {
+            let first = self.scene.n_lines() as u32;
+            let segments = (first..).zip(own.ends.iter().zip(&own.kinds));
+            let seen = segments.filter(|(_, (ends, _))| !self.sight.same_image(ends[0], ends[1]));
+            drawn.extend(seen.map(|(edge, (_, &kind))| (DrawnEdge { edge, kind }, true)));
         }
         drawn
     }
 
-    /// The bends that are silhouettes.
-    fn bends(&self) -> Vec<DrawnEdge> {
-        let bends = self.scene.bends();
-        let first = (self.scene.n_lines() - bends.len()) as u32;
+    /// The lines to draw beside the edges that are `drawn`: bends that are silhouettes, wires, and
+    /// lines of intersection that are not part of one of these edges.
+    fn other_lines(
+        &self,
+        lines: LineSelection,
+        drawn: &[(DrawnEdge, bool)],
+    ) -> Vec<(DrawnEdge, bool)> {
+        let is_drawn =
+            |edge: u32| drawn.binary_search_by_key(&edge, |(drawn, _)| drawn.edge).is_ok();
         let is_front = |triangle: u32| self.triangle_turns[triangle as usize] == Sign::Positive;
-        let drawn = bends.par_iter().zip(first..first + bends.len() as u32);
-        drawn
-            .filter(|(bend, _)| is_front(bend.triangles[0]) != is_front(bend.triangles[1]))
-            .filter(|(bend, _)| !self.sight.same_image(bend.ends[0], bend.ends[1]))
-            .map(|(_, edge)| DrawnEdge { edge, kind: StrokeKind::Silhouette })
+        let has_folds = lines.contains(StrokeKind::Silhouette);
+        let (crossings, bends) = (self.scene.intersections().lines(), self.scene.bends());
+        let kind = |source| match source {
+            LineSource::Intersection(k) => {
+                let crossing = &crossings[k as usize];
+                let is_wanted = lines.contains(StrokeKind::Intersection);
+                (is_wanted && !crossing.edges().any(is_drawn)).then_some(StrokeKind::Intersection)
+            }
+            LineSource::Bend(k) => {
+                let [one, other] = bends[k as usize].triangles.map(is_front);
+                let is_wanted = has_folds || lines.has_outline();
+                (is_wanted && one != other).then_some(StrokeKind::Silhouette)
+            }
+            LineSource::Wire(_) => lines.contains(StrokeKind::Wire).then_some(StrokeKind::Wire),
+        };
+        let first = self.scene.topology().edges().len() as u32;
+        let others = self.scene.other_lines();
+        let numbered = others.par_iter().zip(first..first + others.len() as u32);
+        numbered
+            .filter_map(|(line, edge)| {
+                let kind = kind(line.source)?;
+                let is_whole = has_folds || !matches!(line.source, LineSource::Bend(_));
+                let is_seen = !self.sight.same_image(line.ends[0], line.ends[1]);
+                is_seen.then_some((DrawnEdge { edge, kind }, is_whole))
+            })
             .collect()
     }
 
@@ -309,21 +417,6 @@ impl<'a> ViewedScene<'a> {
         let [p, q, r] = corners.map(|vertex| self.scene.mesh().positions()[vertex as usize]);
         // A triangle without area faces nowhere.
         if turn == Sign::Zero && exact::collinear(p, q, r) { self.facing(face) } else { turn }
-    }
-
-    /// The lines of intersection to draw beside the edges that are `drawn`: those that are part of
-    /// one of these are drawn already.
-    fn intersections(&self, drawn: &[(DrawnEdge, bool)]) -> Vec<DrawnEdge> {
-        let is_drawn =
-            |edge: u32| drawn.binary_search_by_key(&edge, |(drawn, _)| drawn.edge).is_ok();
-        let n_edges = self.scene.topology().edges().len() as u32;
-        let lines = self.scene.intersections().lines();
-        let drawn = lines.par_iter().zip(n_edges..n_edges + lines.len() as u32);
-        drawn
-            .filter(|(line, _)| !line.edges().any(is_drawn))
-            .filter(|(line, _)| !self.sight.same_image(line.ends[0], line.ends[1]))
-            .map(|(_, edge)| DrawnEdge { edge, kind: StrokeKind::Intersection })
-            .collect()
     }
 
     /// The first kind that applies to an edge, when any that applies is among `lines`.

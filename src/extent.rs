@@ -33,9 +33,9 @@ impl Extent {
     /// Nothing.
     pub const EMPTY: Self = Self { corners: None };
 
-    /// The extent of the segments between `points`, all finite, as `camera` sees them; each point
+    /// The extent of lists of segments between `points`, all finite, as `camera` sees them; each point
     /// belongs to a segment. O(points + segments), in parallel; usually the points alone decide.
-    pub fn new(points: &[DVec3], segments: &[[u32; 2]], camera: &Camera) -> Self {
+    pub fn new(points: &[DVec3], segments: &[&[[u32; 2]]], camera: &Camera) -> Self {
         Self::of_points(points.par_iter().copied(), camera)
             .unwrap_or_else(|| Self::of_segments(points, segments, camera))
     }
@@ -64,7 +64,7 @@ impl Extent {
     }
 
     /// The extent of segments, clipped one by one.
-    fn of_segments(points: &[DVec3], segments: &[[u32; 2]], camera: &Camera) -> Self {
+    fn of_segments(points: &[DVec3], segments: &[&[[u32; 2]]], camera: &Camera) -> Self {
         let sight = Sight::new(points, camera);
         let (eye, frame) = (camera.eye(), camera.frame());
         let kept = |&ends: &[u32; 2]| -> Option<[DVec2; 2]> {
@@ -73,7 +73,8 @@ impl Extent {
             Some([from.t, to.t].map(|t| a.towards(b, t).image()))
         };
         let all = |clip: &(dyn Fn([DVec2; 2]) -> Self + Sync)| {
-            let extents = segments.par_iter().with_min_len(1 << 12).filter_map(kept).map(clip);
+            let segments = segments.par_iter().flat_map(|list| list.par_iter());
+            let extents = segments.filter_map(kept).map(clip);
             extents.reduce(|| Self::EMPTY, Self::union)
         };
         let whole = |[a, b]: [DVec2; 2]| Self::at(a).union(Self::at(b));

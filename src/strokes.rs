@@ -18,6 +18,8 @@ pub enum StrokeKind {
     Nonmanifold,
     /// Where two faces pierce each other.
     Intersection,
+    /// A polyline of the model that borders no face.
+    Wire,
     /// Between two materials or groups.
     Material,
     /// Any other edge of a mesh.
@@ -43,6 +45,7 @@ impl StrokeKind {
             Self::Boundary => "boundary",
             Self::Nonmanifold => "nonmanifold",
             Self::Intersection => "intersection",
+            Self::Wire => "wire",
             Self::Material => "material",
             Self::Mesh => "mesh",
             Self::Grid => "grid",

@@ -94,7 +94,7 @@ struct EdgeArgs {
     no_edges: bool,
     /// Kinds of line on top, as for `draw`
     #[arg(long, value_name = "KINDS", value_parser = values::lines)]
-    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
+    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     lines: LineSelection,
     /// Faces that meet at more than this angle make a crease
     #[arg(long, value_name = "DEG", value_parser = values::crease)]

@@ -173,6 +173,11 @@ fn described(repairs: Repairs) -> String {
         (repairs.unused_vertices, "unused vertex left out", "unused vertices left out"),
         (repairs.degenerate_faces, "degenerate face left out", "degenerate faces left out"),
         (repairs.repeated_corners, "repeated corner left out", "repeated corners left out"),
+        (
+            repairs.dropped_wires,
+            "wire without length or given twice left out",
+            "wires without length or given twice left out",
+        ),
     ]
     .iter()
     .filter(|(count, ..)| *count > 0)

@@ -92,12 +92,13 @@ pub(super) fn scale(text: &str) -> Result<f64, String> {
 }
 
 /// What [`lines`] knows.
-const KINDS_OF_LINE: [&str; 9] = [
+const KINDS_OF_LINE: [&str; 10] = [
     "silhouette",
     "crease",
     "boundary",
     "nonmanifold",
     "intersection",
+    "wire",
     "material",
     "mesh",
     "outline",
@@ -114,6 +115,7 @@ pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
             "boundary" => lines.with(StrokeKind::Boundary),
             "nonmanifold" => lines.with(StrokeKind::Nonmanifold),
             "intersection" => lines.with(StrokeKind::Intersection),
+            "wire" => lines.with(StrokeKind::Wire),
             "material" => lines.with(StrokeKind::Material),
             "mesh" => lines.with(StrokeKind::Mesh),
             "outline" => lines.with_outline(),
@@ -169,12 +171,13 @@ pub(super) fn pen(text: &str) -> Result<PenText, String> {
 }
 
 fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
-    const KINDS: [StrokeKind; 12] = [
+    const KINDS: [StrokeKind; 13] = [
         StrokeKind::Silhouette,
         StrokeKind::Crease,
         StrokeKind::Boundary,
         StrokeKind::Nonmanifold,
         StrokeKind::Intersection,
+        StrokeKind::Wire,
         StrokeKind::Material,
         StrokeKind::Mesh,
         StrokeKind::Grid,

@@ -97,7 +97,7 @@ impl Arrangement {
     }
 }
 
-/// Adds the faces and parts of `mesh`, which is the model with this number, to `soup`.
+/// Adds the faces, wires and parts of `mesh`, which is the model with this number, to `soup`.
 fn append(soup: &mut PolygonSoup, mesh: &Mesh, model: u32) -> Result<(), MeshError> {
     let too_large = |_| MeshError::TooLarge;
     let first_vertex = u32::try_from(soup.positions.len()).map_err(too_large)?;
@@ -108,6 +108,7 @@ fn append(soup: &mut PolygonSoup, mesh: &Mesh, model: u32) -> Result<(), MeshErr
     let first_part = soup.parts.len() as u32;
     soup.positions.extend_from_slice(mesh.positions());
     soup.corners.extend(mesh.corners().iter().map(|corner| first_vertex + corner));
+    soup.wires.extend(mesh.wires().iter().map(|ends| ends.map(|end| first_vertex + end)));
     soup.face_starts.extend(mesh.face_starts().iter().skip(1).map(|end| first_corner + end));
     if mesh.face_parts().is_empty() {
         soup.parts.push(Part { model, ..Part::default() });

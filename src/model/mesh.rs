@@ -5,6 +5,8 @@
 
 mod weld;
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 use thiserror::Error;
 
@@ -26,6 +28,8 @@ pub struct PolygonSoup {
     pub face_parts: Vec<u32>,
     /// The groups and materials that the file names.
     pub parts: Vec<Part>,
+    /// Segments of polylines that border no face, as pairs of indices into `positions`.
+    pub wires: Vec<[u32; 2]>,
 }
 
 /// What a file calls a run of faces: its object or group, and its material.
@@ -47,6 +51,7 @@ impl Default for PolygonSoup {
             face_starts: vec![0],
             face_parts: Vec::new(),
             parts: Vec::new(),
+            wires: Vec::new(),
         }
     }
 }
@@ -56,6 +61,11 @@ impl PolygonSoup {
     pub fn push_face(&mut self, corners: &[u32]) {
         self.corners.extend_from_slice(corners);
         self.face_starts.push(self.corners.len() as u32);
+    }
+
+    /// Appends the segments of a polyline that borders no face.
+    pub fn push_wire(&mut self, points: &[u32]) {
+        self.wires.extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
     }
 
     /// Number of faces, degenerate ones included.
@@ -75,6 +85,7 @@ pub struct Mesh {
     face_starts: Vec<u32>,
     face_parts: Vec<u32>,
     parts: Vec<Part>,
+    wires: Vec<[u32; 2]>,
 }
 
 /// What [`Mesh::new`] changed on the way from soup to mesh.
@@ -82,12 +93,14 @@ pub struct Mesh {
 pub struct Repairs {
     /// Positions that were equal to an earlier one and became the same vertex.
     pub welded_vertices: usize,
-    /// Positions that no face uses.
+    /// Positions that neither a face nor a wire uses.
     pub unused_vertices: usize,
     /// Faces left with fewer than three corners.
     pub degenerate_faces: usize,
     /// Corners equal to the one before them on the same face.
     pub repeated_corners: usize,
+    /// Wires whose ends are one vertex, or that are the same as an earlier one.
+    pub dropped_wires: usize,
 }
 
 impl std::ops::AddAssign for Repairs {
@@ -96,6 +109,7 @@ impl std::ops::AddAssign for Repairs {
         self.unused_vertices += more.unused_vertices;
         self.degenerate_faces += more.degenerate_faces;
         self.repeated_corners += more.repeated_corners;
+        self.dropped_wires += more.dropped_wires;
     }
 }
 
@@ -118,6 +132,16 @@ pub enum MeshError {
         /// How many positions there are.
         n_vertices: usize,
     },
+    /// A wire names a vertex that does not exist.
+    #[error("wire {wire} refers to vertex {vertex}, but there are only {n_vertices}")]
+    MissingWireVertex {
+        /// Wire in the list, counted from 0.
+        wire: usize,
+        /// The index it uses, counted from 0.
+        vertex: u32,
+        /// How many positions there are.
+        n_vertices: usize,
+    },
     /// A distance to weld within that is negative, infinite or not a number.
     #[error("the distance to weld within is {distance}; it must be a finite number, 0 or more")]
     BadDistance {
@@ -130,7 +154,8 @@ pub enum MeshError {
 }
 
 impl Mesh {
-    /// Welds equal positions, removes repeated corners and faces without area to span.
+    /// Welds equal positions, removes repeated corners and faces without area to span, and drops
+    /// wires without length and those given twice.
     ///
     /// Positions are equal when their coordinates are (−0 is 0); the first of them stands for all,
     /// and vertices keep the order of their first appearance. O(vertices + corners).
@@ -152,6 +177,11 @@ impl Mesh {
                 }
             }
         }
+        for (wire, ends) in soup.wires.iter().enumerate() {
+            if let Some(&vertex) = ends.iter().find(|&&end| end as usize >= n_vertices) {
+                return Err(MeshError::MissingWireVertex { wire, vertex, n_vertices });
+            }
+        }
         let mut repairs = Repairs::default();
         let first_equal = first_equal_position(&soup.positions);
         repairs.welded_vertices =
@@ -163,6 +193,7 @@ impl Mesh {
             face_starts: Vec::with_capacity(soup.face_starts.len()),
             face_parts: Vec::new(),
             parts: soup.parts,
+            wires: Vec::with_capacity(soup.wires.len()),
         };
         mesh.face_starts.push(0);
         let mut used = vec![false; n_vertices];
@@ -196,6 +227,17 @@ impl Mesh {
             }
         }
 
+        let mut known = HashSet::new();
+        for ends in &soup.wires {
+            let [a, b] = ends.map(|end| first_equal[end as usize]);
+            if a == b || !known.insert([a.min(b), a.max(b)]) {
+                repairs.dropped_wires += 1;
+                continue;
+            }
+            (used[a as usize], used[b as usize]) = (true, true);
+            mesh.wires.push([a, b]);
+        }
+
         let mut renumbered = vec![u32::MAX; n_vertices];
         for (vertex, &position) in soup.positions.iter().enumerate() {
             if used[vertex] {
@@ -206,7 +248,7 @@ impl Mesh {
                 repairs.unused_vertices += 1;
             }
         }
-        for corner in &mut mesh.corners {
+        for corner in mesh.corners.iter_mut().chain(mesh.wires.as_flattened_mut()) {
             *corner = renumbered[*corner as usize];
         }
         Ok((mesh, repairs))
@@ -236,6 +278,7 @@ impl Mesh {
             face_starts: self.face_starts,
             face_parts: self.face_parts,
             parts: self.parts,
+            wires: self.wires,
         })
     }
 
@@ -273,6 +316,12 @@ impl Mesh {
     /// The groups and materials of the model.
     pub fn parts(&self) -> &[Part] {
         &self.parts
+    }
+
+    /// Segments of polylines that border no face, as pairs of vertex indices: they can be hidden and
+    /// hide nothing. No two of them are the same, and none has equal ends.
+    pub fn wires(&self) -> &[[u32; 2]] {
+        &self.wires
     }
 
     /// Smallest box around all vertices as (lowest, highest) corner; `None` without vertices.

@@ -1,21 +1,44 @@
-//! The scene, once for all views: mesh, triangles that hide, topology, and where faces cross.
+//! The scene, once for all views: mesh, triangles that hide, topology, and every line that can be drawn.
 //!
-//! All that can be drawn is numbered in one row, and so are its ends:
+//! Lines share one numbering, and so do their ends:
 //!
 //! ```text
-//!   lines     edges of the mesh       | lines of intersection               | bends
-//!   points    vertices of the mesh    | ends of those that are no vertices
+//!   lines     edges of faces          | other lines: intersections, bends, wires | those of a view
+//!   points    vertices of the mesh    | ends of lines that are no vertices       | those of a view
 //! ```
+//!
+//! A view may add lines and points of its own; see
+//! [`ViewSegments`](crate::classify::ViewSegments).
 
 use crate::camera::Camera;
 use crate::extent::Extent;
 use crate::model::bends::{Bend, bends};
-use crate::model::intersections::{Intersection, Intersections};
+use crate::model::intersections::Intersections;
 use crate::model::mesh::Mesh;
 use crate::model::topology::Topology;
 use crate::model::triangulate::triangulate;
 use crate::predicates::PiercePoint;
 use glam::DVec3;
+
+/// A line that is not an edge of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SceneLine {
+    /// Its ends, as numbers of points.
+    pub ends: [u32; 2],
+    /// Where it comes from.
+    pub source: LineSource,
+}
+
+/// Where a line comes from that is not an edge of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineSource {
+    /// Two faces cross: a number in [`Intersections::lines`].
+    Intersection(u32),
+    /// A bent face is folded: a number in [`Scene::bends`].
+    Bend(u32),
+    /// A polyline of the model that borders no face: a number in [`Mesh::wires`].
+    Wire(u32),
+}
 
 /// A mesh with everything about it that does not depend on the view.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -26,6 +49,8 @@ pub struct Scene {
     triangle_faces: Vec<u32>,
     intersections: Intersections,
     bends: Vec<Bend>,
+    /// All lines that are not edges of faces: intersections, then bends, then wires.
+    lines: Vec<SceneLine>,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
     points: Vec<DVec3>,
 }
@@ -35,7 +60,7 @@ impl Scene {
     pub fn new(mesh: Mesh) -> Self {
         let topology = Topology::new(&mesh);
         let (triangles, triangle_faces) = triangulate(&mesh);
-        Self { mesh, topology, triangles, triangle_faces, ..Self::default() }
+        Self { mesh, topology, triangles, triangle_faces, ..Self::default() }.with_lines()
     }
 
     /// Also finds the lines in which faces cross, so that they can be drawn.
@@ -52,7 +77,7 @@ impl Scene {
             self.points.extend_from_slice(self.mesh.positions());
             self.points.extend(constructed.iter().map(PiercePoint::rounded));
         }
-        self
+        self.with_lines()
     }
 
     /// Also finds where bent faces are folded, so that contours which run there can be drawn.
@@ -62,6 +87,23 @@ impl Scene {
     #[must_use]
     pub fn with_bends(mut self) -> Self {
         self.bends = bends(&self.mesh, &self.topology, &self.triangles, &self.triangle_faces);
+        self.with_lines()
+    }
+
+    /// Lists the lines that are not edges of faces.
+    fn with_lines(mut self) -> Self {
+        self.lines.clear();
+        let crossings = (0..).zip(self.intersections.lines());
+        self.lines.extend(crossings.map(|(k, crossing)| SceneLine {
+            ends: crossing.ends,
+            source: LineSource::Intersection(k),
+        }));
+        let bends = (0..).zip(&self.bends);
+        self.lines.extend(
+            bends.map(|(k, bend)| SceneLine { ends: bend.ends, source: LineSource::Bend(k) }),
+        );
+        let wires = (0..).zip(self.mesh.wires());
+        self.lines.extend(wires.map(|(k, &ends)| SceneLine { ends, source: LineSource::Wire(k) }));
         self
     }
 
@@ -104,7 +146,8 @@ impl Scene {
     /// What of the image the scene takes up as `camera` sees it. O(vertices), in parallel; where the
     /// near plane cuts or the view is very wide, O(edges).
     pub fn extent(&self, camera: &Camera) -> Extent {
-        Extent::new(self.mesh.positions(), self.topology.edges(), camera)
+        let (edges, wires) = (self.topology.edges(), self.mesh.wires());
+        Extent::new(self.mesh.positions(), &[edges, wires], camera)
     }
 
     /// The positions of all vertices, then those of constructed points, rounded.
@@ -112,30 +155,30 @@ impl Scene {
         if self.points.is_empty() { self.mesh.positions() } else { &self.points }
     }
 
-    /// Number of edges, lines of intersection and bends.
-    pub fn n_lines(&self) -> usize {
-        self.topology.edges().len() + self.intersections.lines().len() + self.bends.len()
+    /// The lines that are not edges of faces. Their numbers follow those of the edges.
+    pub fn other_lines(&self) -> &[SceneLine] {
+        &self.lines
     }
 
-    /// The ends of an edge, line of intersection or bend, as numbers of points. Panics when there is no
-    /// such line.
+    /// Number of lines: edges of faces and others.
+    pub fn n_lines(&self) -> usize {
+        self.topology.edges().len() + self.lines.len()
+    }
+
+    /// The ends of a line, as numbers of points. Panics when there is no such line.
     #[inline]
     pub fn line(&self, line: u32) -> [u32; 2] {
         let edges = self.topology.edges();
-        if let Some(&ends) = edges.get(line as usize) {
-            return ends;
-        }
-        let (number, crossings) = (line as usize - edges.len(), self.intersections.lines());
-        match crossings.get(number) {
-            Some(crossing) => crossing.ends,
-            None => self.bends[number - crossings.len()].ends,
+        match edges.get(line as usize) {
+            Some(&ends) => ends,
+            None => self.lines[line as usize - edges.len()].ends,
         }
     }
 
-    /// The line of intersection with this number among all lines; `None` for an edge or bend.
+    /// Where a line comes from; `None` for an edge of a face, and for a line that only a view has.
     #[inline]
-    pub fn intersection(&self, line: u32) -> Option<&Intersection> {
+    pub fn source(&self, line: u32) -> Option<LineSource> {
         let number = (line as usize).checked_sub(self.topology.edges().len())?;
-        self.intersections.lines().get(number)
+        self.lines.get(number).map(|line| line.source)
     }
 }

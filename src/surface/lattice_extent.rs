@@ -35,6 +35,6 @@ pub fn lattice_extent(
                 }
             }
         }
-        Extent::new(&points, &segments, camera)
+        Extent::new(&points, &[&segments], camera)
     })
 }

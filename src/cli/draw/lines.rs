@@ -19,6 +19,7 @@ pub(super) struct LineArgs {
     ///   boundary      on one face only
     ///   nonmanifold   on three faces or more
     ///   intersection  where faces pierce each other
+    ///   wire          polylines of the model that border no face
     ///   material      where groups or materials change
     ///   mesh, all     every edge of the mesh
     ///   outline       silhouette, boundary and nonmanifold edges where the background is seen
@@ -26,7 +27,7 @@ pub(super) struct LineArgs {
     ///
     /// An edge to which several kinds apply is drawn when any of them is named.
     #[arg(long, value_name = "KINDS", value_parser = values::lines, verbatim_doc_comment)]
-    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
+    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     lines: LineSelection,
     /// Faces that meet at more than this angle make a crease
     #[arg(long, value_name = "DEG", value_parser = values::crease)]

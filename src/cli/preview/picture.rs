@@ -48,7 +48,7 @@ pub(super) struct PictureArgs {
     pub(super) edges: bool,
     /// Kinds of line for --edges, as for `draw`
     #[arg(long, value_name = "KINDS", value_parser = values::lines, requires = "edges")]
-    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection")]
+    #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     pub(super) lines: LineSelection,
     /// Width of these lines in pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 1.5)]

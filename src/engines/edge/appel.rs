@@ -166,9 +166,10 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     (visibility, counts)
 }
 
-/// Edges, and lines of intersection, each with nothing in place of the other.
+/// Edges of faces, and all other lines, each with nothing in place of the other.
 ///
-/// Both ends of the latter lie on triangles, so none could take over a number from the edges.
+/// The ends of the latter are no vertices of a surface, or lie on one, so none could take over a
+/// count from the edges. [`roberts`] does them.
 fn apart(
     view: &ViewedScene,
     mut segments: Vec<Option<Segment>>,

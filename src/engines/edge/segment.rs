@@ -4,7 +4,7 @@ use crate::classify::ViewedScene;
 use crate::predicates::{Cut, CutPlane, Sign};
 use glam::DVec2;
 
-/// An edge or line of intersection, clipped by the near plane, with its rounded image for quick rejection.
+/// An edge or other line, clipped by the near plane, with its rounded image for quick rejection.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Segment {
     /// Its number among the lines of the scene.
@@ -24,7 +24,7 @@ pub(super) struct Segment {
 impl Segment {
     /// The part of a line that the near plane keeps; `None` when nothing of it is left.
     pub(super) fn new(view: &ViewedScene, edge: u32) -> Option<Self> {
-        let ends = view.scene().line(edge);
+        let ends = view.line(edge);
         let sight = view.sight();
         let (mut from, mut to) = (Cut::START, Cut::END);
         if view.near_plane_cuts() {

@@ -14,6 +14,7 @@
 
 use super::segment::Segment;
 use crate::classify::ViewedScene;
+use crate::model::scene::LineSource;
 use crate::predicates::{Cut, CutPlane, Estimate, Sign};
 use std::cmp::Ordering;
 
@@ -239,9 +240,13 @@ fn within_image(
 #[inline]
 fn is_own_plane(view: &ViewedScene, segment: &Segment, triangle: u32) -> bool {
     let scene = view.scene();
-    scene
-        .intersection(segment.edge)
-        .is_some_and(|line| scene.intersections().is_in_plane_of(line, triangle))
+    match scene.source(segment.edge) {
+        Some(LineSource::Intersection(k)) => {
+            let crossings = scene.intersections();
+            crossings.is_in_plane_of(&crossings.lines()[k as usize], triangle)
+        }
+        _ => false,
+    }
 }
 
 /// The side of the segment's image on which a vertex lies that is not on it.

@@ -58,7 +58,8 @@ const TRIANGLES_PER_STRIP: usize = 60_000;
 ///
 /// `None` when the scene is neither a function over a convex domain nor two that meet along its
 /// border, when triangles hide each other in a cycle, when the eye is on the surface or between two
-/// sheets, or when the near plane cuts a triangle.
+/// sheets, when the near plane cuts a triangle, or when lines are drawn that are not edges of
+/// triangles.
 pub fn solve(view: &ViewedScene) -> Option<(Visibility, HorizonCounts)> {
     solve_in_strips(view, TRIANGLES_PER_STRIP)
 }
@@ -70,8 +71,10 @@ pub fn solve_in_strips(
     triangles_per_strip: usize,
 ) -> Option<(Visibility, HorizonCounts)> {
     let scene = view.scene();
+    let n_edges = scene.topology().edges().len();
+    let has_others = view.drawn().last().is_some_and(|drawn| drawn.edge as usize >= n_edges);
     let sheets = Sheets::of(scene)?;
-    if !is_clear_of_near_plane(view) {
+    if has_others || !is_clear_of_near_plane(view) {
         return None;
     }
     let camera = view.camera();

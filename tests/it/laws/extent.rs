@@ -48,10 +48,7 @@ fn what_lies_beyond_sixty_degrees_is_clipped_there() {
     let scene = triangle([dvec3(0.0, 1.0, 0.0), dvec3(10.0, 1.0, 0.0), dvec3(0.0, 1.0, 1.0)]);
     let sqrt_3 = 3f64.sqrt();
     let right = (sqrt_3 * 1e9).round() / 1e9;
-    assert_eq!(
-        corners(scene.extent(&perspective(1e-6))),
-        Some([DVec2::ZERO, dvec2(right, 1.0)])
-    );
+    assert_eq!(corners(scene.extent(&perspective(1e-6))), Some([DVec2::ZERO, dvec2(right, 1.0)]));
     let expected = [DVec2::ZERO, dvec2(10.0, 1.0)];
     assert_eq!(corners(scene.extent(&orthographic())), Some(expected));
 }

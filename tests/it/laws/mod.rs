@@ -5,14 +5,15 @@ mod appel;
 mod bends;
 mod closed_forms;
 mod drawings;
-mod extent;
 pub(crate) mod engines;
+mod extent;
 mod intersections;
 mod invariance;
 mod materials;
 mod outline;
 mod strokes;
 mod views;
+mod wires;
 
 // Other engines.
 mod face;

@@ -79,7 +79,7 @@ impl<'a> Sides<'a> {
         if self.sides_are_edges {
             return Some(edge);
         }
-        let [p, q] = view.scene().line(edge);
+        let [p, q] = view.line(edge);
         self.table.find_edge(p, q)
     }
 
