@@ -27,8 +27,8 @@ fn corners(extent: Extent) -> Option<[DVec2; 2]> {
 }
 
 fn triangle(points: [DVec3; 3]) -> Scene {
-    let mut soup = PolygonSoup::default();
-    soup.positions = points.to_vec();
+    let positions = points.to_vec();
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     soup.push_face(&[0, 1, 2]);
     Scene::new(Mesh::new(soup).unwrap().0)
 }
@@ -96,10 +96,10 @@ fn holes_of_a_lattice_do_not_count() {
 #[test]
 fn a_page_is_placed_alike_whatever_lines_are_chosen() {
     // A flat pyramid seen from above: its silhouette is its base, its creases meet at the top.
-    let mut soup = PolygonSoup::default();
-    soup.positions = [[-1.0, 4.0, -1.0], [1.0, 4.0, -1.0], [1.0, 4.0, 1.0], [-1.0, 4.0, 1.0]]
+    let positions = [[-1.0, 4.0, -1.0], [1.0, 4.0, -1.0], [1.0, 4.0, 1.0], [-1.0, 4.0, 1.0]]
         .map(DVec3::from_array)
         .to_vec();
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     soup.positions.push(dvec3(0.0, 2.0, 0.0));
     for [a, b] in [[1, 0], [2, 1], [3, 2], [0, 3]] {
         soup.push_face(&[a, b, 4]);

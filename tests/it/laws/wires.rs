@@ -23,8 +23,8 @@ const COUNTED: Settings =
 
 /// The scene's mesh as soup.
 fn soup(scene: &TestScene) -> PolygonSoup {
-    let mut soup = PolygonSoup::default();
-    soup.positions = scene.positions.iter().map(|&p| DVec3::from(p)).collect();
+    let positions = scene.positions.iter().map(|&p| DVec3::from(p)).collect();
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     scene.faces.iter().for_each(|face| soup.push_face(face));
     soup
 }
@@ -115,8 +115,7 @@ fn wires_hide_nothing_and_leave_edges_as_they_are() {
 
 /// A square in front of a wire that runs on to both sides, and a wire before it.
 fn square_and_wires() -> Scene {
-    let mut soup = PolygonSoup::default();
-    soup.positions = [
+    let positions = [
         [-1.0, 0.0, -1.0],
         [1.0, 0.0, -1.0],
         [1.0, 0.0, 1.0],
@@ -129,6 +128,7 @@ fn square_and_wires() -> Scene {
     ]
     .map(DVec3::from_array)
     .to_vec();
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     soup.push_face(&[0, 1, 2, 3]);
     soup.push_wire(&[4, 5, 6]);
     soup.push_wire(&[7, 8]);
@@ -165,8 +165,8 @@ fn a_wire_behind_a_square_is_drawn_beside_it_and_joined_at_its_corner() {
 
 #[test]
 fn a_model_may_be_nothing_but_wires() {
-    let mut soup = PolygonSoup::default();
-    soup.positions = vec![DVec3::ZERO, DVec3::X, DVec3::Z];
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Z];
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     soup.push_wire(&[0, 1, 2]);
     let scene = Scene::new(Mesh::new(soup).unwrap().0);
     for engine in ENGINES {
@@ -179,8 +179,8 @@ fn a_model_may_be_nothing_but_wires() {
 
 #[test]
 fn meshes_keep_each_wire_once_and_refuse_vertices_that_are_not_there() {
-    let mut soup = PolygonSoup::default();
-    soup.positions = vec![DVec3::ZERO, DVec3::X, DVec3::ZERO, DVec3::Y, DVec3::Z];
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::ZERO, DVec3::Y, DVec3::Z];
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     soup.push_wire(&[0, 1, 2]);
     soup.push_wire(&[0, 2]);
     soup.push_wire(&[4, 0]);
@@ -202,8 +202,8 @@ fn meshes_keep_each_wire_once_and_refuse_vertices_that_are_not_there() {
 
 #[test]
 fn an_engine_for_triangulated_surfaces_leaves_wires_to_others() {
-    let mut soup = PolygonSoup::default();
-    soup.positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
     soup.push_face(&[0, 1, 2]);
     soup.push_wire(&[0, 3]);
     let scene = Scene::new(Mesh::new(soup).unwrap().0);
