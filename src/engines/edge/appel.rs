@@ -48,6 +48,9 @@
 //! | 9,800 | 14,800 | 29,022 | 6,334 | 1 | 181,503 |
 //! | 101,760 | 152,960 | 113,959 | 51,393 | 1 | 2,108,630 |
 //! | 998,000 | 1,498,000 | 389,362 | 1,126,541 | 1 | 20,964,609 |
+//!
+//! Coherence: edge coherence. Visibility changes only where an edge passes a cutting edge or pierces a
+//! face, and is carried from edge to edge at vertices.
 
 mod ahead;
 mod box_join;

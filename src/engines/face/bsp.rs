@@ -22,7 +22,8 @@
 //! fragments number n² or more: 300 triangles at random in a cube make 104 000, in 2.5 s, and a
 //! thousand are refused (see [`MAX_PIERCINGS`]).
 //!
-//! Uses no coherence between views but the tree itself.
+//! Coherence: picture sequence coherence (one tree serves all views) and object coherence (what lies on
+//! one side of a plane is ordered as a whole).
 //!
 //! # Size and time
 //!

@@ -36,7 +36,7 @@
 //! boxes overlap. Cannot: keep anything for the next view. Many large faces behind each other make n²
 //! pairs; that is estimated first, see [`MAX_PAIRS`].
 //!
-//! Coherence: that of objects, in that boxes stand for faces.
+//! Coherence: object coherence (boxes stand for faces).
 //!
 //! # Time
 //!

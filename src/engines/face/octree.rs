@@ -47,6 +47,9 @@
 //!
 //! Half of the fragments of a closed body face away. Of these stay such as lie where a silhouette runs
 //! in front of them, or where the faces in front reach into an octant that is not painted yet.
+//!
+//! Coherence: object coherence (an octant on a covered square is skipped with all it holds) and picture
+//! sequence coherence (one tree serves all views).
 
 mod hidden;
 mod seams;

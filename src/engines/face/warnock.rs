@@ -34,6 +34,9 @@
 //! Good for: looking at how complicated a picture is; scenes with few, large faces. Exactness: within
 //! a leaf of where two faces meet. Cost: leaves along all borders between faces × log; candidates
 //! become fewer from window to window. Cannot: more than [`MOST_LEAVES`] leaves, refused at once.
+//!
+//! Coherence: face coherence, in the area of a window (a window of one face needs no further look), and
+//! object coherence (what a surrounding face hides is not handed down to the parts of a window).
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

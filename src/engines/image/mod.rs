@@ -34,8 +34,7 @@
 //! - The nearest of the covering triangles is seen, by the depth of its plane at the center; at equal
 //!   depths the one with the lowest number, so that of the lowest face (see [`depth`]).
 //!
-//! Coherence (what saves work from one pixel to the next): [`z_buffer`] uses that of edges and faces,
-//! [`scan_line`], [`spanning`] and [`watkins`] also that of scan lines, [`ray_cast`] none.
+//! Each module says which coherence it uses: what it carries on from one pixel, row or face to the next.
 
 pub mod depth;
 pub mod edge;

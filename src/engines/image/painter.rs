@@ -10,6 +10,8 @@
 //! tree of planes ([`bsp`]), and those that have too many crossing faces for that, too, are refused.
 //!
 //! Good for: a check of the order that fills are painted in; it keeps nothing but the order.
+//!
+//! Coherence: face coherence (a face is painted row by row, without looking at any other).
 
 use glam::DVec3;
 use thiserror::Error;

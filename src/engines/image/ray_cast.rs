@@ -14,6 +14,8 @@
 //! Source: lecture notes on visibility (Slovak), section 2.4: a z-buffer whose parts are one pixel
 //! large. The tree halves the triangles by the middles of their boxes (Kay, Kajiya 1986).
 //! Good for: checking the others; single pixels.
+//!
+//! Coherence: object coherence (boxes stand for triangles); none from pixel to pixel.
 
 use glam::DVec2;
 

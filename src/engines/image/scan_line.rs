@@ -9,6 +9,8 @@
 //! Source: lecture notes on visibility (Slovak), section 2.2: the loops of the z-buffer change
 //! places; the pairs of edges are those of the German notes' scan-line z-buffer.
 //! Good for: pictures of any height with the memory of one row.
+//!
+//! Coherence: face coherence along a row, and scan-line coherence (triangles are kept from row to row).
 
 use super::depth::Depth;
 use super::raster::{Raster, RowStrip, columns};

@@ -16,6 +16,9 @@
 //! Source: lecture notes on visibility (Slovak), section 2.3; German notes, "Spanning Scan Line":
 //! edge table, polygon table, flags. Bouknight 1970.
 //! Good for: wide pictures of few, large faces.
+//!
+//! Coherence: face coherence (one triangle fills a span), edge and scan-line coherence (the edge table
+//! moves from row to row).
 
 use super::NOTHING;
 use super::active::EdgeTable;

@@ -15,6 +15,9 @@
 //! Source: lecture slides on Watkins' algorithm (Czech), steps 1–6 and "intersection of two faces".
 //! Deviation: back faces stay, since an open sheet may show its back. Watkins 1970.
 //! Good for: pictures that are written row by row, and costly shading: each pixel is shaded once.
+//!
+//! Coherence: face coherence (one triangle fills the columns up to the next edge), edge and scan-line
+//! coherence (the edge table moves from row to row), depth coherence (H stays nearly sorted).
 
 use std::cmp::Reverse;
 

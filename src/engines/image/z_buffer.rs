@@ -9,6 +9,8 @@
 //! Source: lecture notes on visibility (Slovak), section 2.1, with its finer steps: row by row the
 //! ends of each triangle's part, in between depth by steps. Catmull 1974.
 //! Good for: any scene; the cost hardly depends on how the triangles lie. Keeps a strip of depths.
+//!
+//! Coherence: face coherence (depth changes evenly over a triangle).
 
 use super::depth::Depth;
 use super::raster::{Raster, RowStrip, columns};

@@ -16,6 +16,9 @@
 //! Differs from the textbook method in that the horizons are exact piecewise linear functions, not
 //! arrays of pixels; a line is cut where it crosses a horizon, not judged by its ends; and the
 //! domain is split at the eye's x and y, so that the eye may stand over it. O(samples + crossings).
+//!
+//! Coherence: scan-line coherence, with a line of the family for the scan line (a horizon is changed next
+//! to its last change), and edge coherence (visibility changes only where a line crosses a horizon).
 
 use std::sync::atomic::AtomicU8;
 

@@ -37,8 +37,8 @@
 //! them few: a cell well within a horizon is passed over (see `steps`), and a cell whose near edges
 //! are the horizon hands it on to its far edges (see `horizon::advance`).
 //!
-//! The order of rows keeps the coherence of neighboring cells: each is added to the horizon next to
-//! the one before. O(samples + crossings); memory beside the result is one row and two horizons for
+//! Coherence: object coherence (the order in plan settles depth once for each view) and edge coherence
+//! (in the order of rows each cell changes the horizon next to where the last one did). O(samples + crossings); memory beside the result is one row and two horizons for
 //! each strip.
 
 use std::cmp::Ordering;

@@ -2,6 +2,7 @@
 
 mod corners;
 mod fragments;
+mod hides;
 pub(crate) mod judge;
 mod models;
 mod order;

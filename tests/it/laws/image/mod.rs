@@ -3,6 +3,7 @@
 mod a_buffer;
 mod agreement;
 mod judge;
+mod shades;
 mod strokes;
 mod warnock;
 

@@ -1,0 +1,82 @@
+//! What pictures tell of depth and normals, on scenes with known answers.
+
+use crate::laws::engines::{camera, mesh};
+use crate::scenes::{Model, orthographic};
+use hiddenline::model::scene::Scene;
+use hiddenline::shading::preview::{PreviewOptions, Show, write};
+use hiddenline::stats::Seconds;
+
+/// Columns and rows.
+const SIZE: (u32, u32) = (40, 40);
+
+/// The picture of a model seen from above, x to the right and y up: the color at a part of the way from
+/// the left and from the bottom.
+fn picture(model: Model, show: Show) -> impl Fn(f64, f64) -> [u8; 3] {
+    let sight = orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+    let scene = model.seen_by("shades", sight);
+    let (built, camera) = (Scene::new(mesh(&scene)), camera(&scene));
+    let options = PreviewOptions {
+        size: SIZE,
+        show,
+        light: Some(glam::DVec3::Z),
+        ..PreviewOptions::default()
+    };
+    let mut bytes = Vec::new();
+    write(&built, &camera, &options, None, &mut bytes, &mut Seconds::default()).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    let n = info.color_type.samples();
+    move |x, y| {
+        let (column, row) = (x * f64::from(SIZE.0), (1.0 - y) * f64::from(SIZE.1));
+        let at = n * (row as usize * SIZE.0 as usize + column as usize);
+        [0, 1, 2].map(|k| pixels[at + k.min(n - 1)])
+    }
+}
+
+#[test]
+fn what_is_nearer_is_lighter() {
+    let mut model = Model::default();
+    // Rises to the right, so the right is nearer to an eye above.
+    model.face(&[[0.0, 0.0, 0.0], [4.0, 0.0, 4.0], [4.0, 4.0, 4.0], [0.0, 4.0, 0.0]]);
+    let at = picture(model, Show::Depth);
+    let (far, middle, near) = (at(0.1, 0.5)[0], at(0.5, 0.5)[0], at(0.9, 0.5)[0]);
+    assert!(far < middle && middle < near && near > 230, "{far}, {middle}, {near}");
+    // From white to a tenth, evenly.
+    assert!((i32::from(middle) - 140).abs() < 8, "{middle}");
+}
+
+#[test]
+fn normals_are_red_to_the_right_and_green_upwards() {
+    let slope = |x: f64, y: f64| {
+        let mut model = Model::default();
+        let corner = |p: f64, q: f64| [p, q, -x * p - y * q];
+        model.face(&[corner(0.0, 0.0), corner(4.0, 0.0), corner(4.0, 4.0), corner(0.0, 4.0)]);
+        picture(model, Show::Normals)(0.5, 0.5)
+    };
+    // The normal of z = −x p − y q is (x, y, 1) over its length; 0.7071 is 218 of 255.
+    for (x, y, expected) in [
+        (0.0, 0.0, [128, 128, 255]),
+        (1.0, 0.0, [218, 128, 218]),
+        (-1.0, 0.0, [37, 128, 218]),
+        (0.0, 1.0, [128, 218, 218]),
+        (0.0, -1.0, [128, 37, 218]),
+    ] {
+        let found = slope(x, y);
+        let is_near =
+            found.iter().zip(expected).all(|(&a, b): (&u8, i32)| (i32::from(a) - b).abs() <= 1);
+        assert!(is_near, "{x}, {y}: {found:?}, not {expected:?}");
+    }
+}
+
+#[test]
+fn backs_are_shaded_as_fronts_are() {
+    let square = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]];
+    let (mut front, mut back) = (Model::default(), Model::default());
+    front.face(&square);
+    let [a, b, c, d] = square;
+    back.face(&[d, c, b, a]);
+    let [front, back] = [front, back].map(|model| picture(model, Show::Tone)(0.5, 0.5));
+    // Light from straight above on a level face is all of it.
+    assert_eq!((front, back), ([255; 3], [255; 3]));
+}
