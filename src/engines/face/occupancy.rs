@@ -202,4 +202,19 @@ mod tests {
         occupancy.cover(&[p(0.3, 0.2), p(0.7, 0.3), p(0.7, 0.7), p(0.3, 0.8)]);
         assert!(occupancy.is_covered(p(0.45, 0.45), p(0.55, 0.55)));
     }
+
+    #[test]
+    fn a_rim_around_squares_and_rectangles_stays_open() {
+        let after_covering_to = |x: f64| {
+            let mut occupancy = Occupancy::new(DVec2::ZERO, DVec2::ONE);
+            let p = |x: f64, y: f64| DVec2::new(x, y);
+            occupancy.cover(&[p(-0.1, -0.1), p(x, -0.1), p(x, 1.1), p(-0.1, 1.1)]);
+            move |to: f64| occupancy.is_covered(p(0.2, 0.2), p(to, 0.6))
+        };
+        let rim = Occupancy::new(DVec2::ZERO, DVec2::ONE).rim();
+        // The squares left of the middle are covered only by what reaches past it by the rim.
+        assert!(!after_covering_to(0.5 + 0.5 * rim)(0.5 - 2.0 * rim));
+        let is_covered = after_covering_to(0.5 + 2.0 * rim);
+        assert!(is_covered(0.5 - 2.0 * rim) && !is_covered(0.5 - 0.5 * rim));
+    }
 }

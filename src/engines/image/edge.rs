@@ -166,4 +166,26 @@ mod tests {
             }
         }
     }
+
+    /// Edges through a center up to rounding: the estimate alone errs on both sides.
+    #[test]
+    fn edges_that_nearly_meet_a_center_give_the_exact_column() {
+        let mut state = 5u64;
+        let mut part = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let (width, mut n_corrected) = (64, 0);
+        for _ in 0..20_000 {
+            let (column, row) = ((part() * 60.0) as u32 + 1, (part() * 8.0) as u32);
+            let way = DVec2::new(40.0 * part() - 20.0, 1.0 + 9.0 * part());
+            let at = DVec2::new(center(column), center(row));
+            let edge = PixelEdge::new(at - way * part(), at + way * part()).expect("not level");
+            let expected = (0..width).find(|&column| edge.has_on_right(column, row));
+            n_corrected +=
+                u32::from(first_center(edge.estimate(row), width) != expected.unwrap_or(width));
+            assert_eq!(edge.column(row, width), expected.unwrap_or(width), "{edge:?}, {row}");
+        }
+        assert!(n_corrected > 100, "only {n_corrected} estimates were off");
+    }
 }

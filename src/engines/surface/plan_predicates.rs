@@ -409,3 +409,22 @@ fn integer(value: f64, unit: i64) -> IBig {
     let (mantissa, power) = parts(value);
     IBig::from(mantissa) << (power - unit).max(0) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_of_a_crossing_does_not_depend_on_the_order_of_its_lines() {
+        // Seen along y, u is x and v is z.
+        let sight = PlanSight { centre: DVec3::ZERO, sx: 1.0, sy: 1.0, forward: Some(DVec3::Y) };
+        let at = |x: f64, z: f64| DVec3::new(x, x, z);
+        let (rising, falling) = ([at(0.0, 0.0), at(2.0, 2.0)], [at(0.0, 2.0), at(2.0, 0.0)]);
+        for (x, expected) in
+            [(0.5, Ordering::Less), (1.0, Ordering::Equal), (1.5, Ordering::Greater)]
+        {
+            assert_eq!(sight.order_to_crossing(at(x, 9.0), rising, falling), expected);
+            assert_eq!(sight.order_to_crossing(at(x, 9.0), falling, rising), expected);
+        }
+    }
+}

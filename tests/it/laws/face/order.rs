@@ -7,7 +7,7 @@ use crate::oracle::Sight;
 use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
-use hiddenline::engines::face::{bsp, depth_sort, octree};
+use hiddenline::engines::face::{bsp, depth_sort, octree, piercing};
 use hiddenline::model::scene::Scene;
 
 /// Judges all engines on one scene; the number of points judged by each.
@@ -146,4 +146,33 @@ fn heaps_of_faces_that_pierce_each_other_are_refused_before_the_start() {
     assert!(octree::solve(&built, &camera).is_err());
     let refused = depth_sort::solve(&built, &camera).unwrap_err();
     assert!(matches!(refused, depth_sort::DepthSortError::TooManyPiercings(_)), "{refused}");
+}
+
+#[test]
+fn piercings_are_estimated_from_a_sample() {
+    // Each of n planes across x goes through each of n planes across y.
+    let n = 400;
+    let mut model = Model::default();
+    for k in 0..n {
+        let at = f64::from(k);
+        model.face(&[[at, -1000.0, -1000.0], [at, 3000.0, -1000.0], [at, 0.0, 3000.0]]);
+        model.face(&[[-1000.0, at, -1100.0], [3000.0, at, -1100.0], [0.0, at, 3100.0]]);
+    }
+    let scene = Scene::new(mesh(&model.seen_by("lattice", views()[0])));
+    let (found, expected) = (piercing::estimate(&scene) as f64, f64::from(n * n));
+    assert!((found - expected).abs() < 0.03 * expected, "{found} instead of {expected}");
+}
+
+#[test]
+fn too_many_pairs_are_refused_before_the_start() {
+    // Parallel slopes over one triangle, all of which overlap in depth.
+    let mut model = Model::default();
+    for k in 0..21_000 {
+        let z = f64::from(k) / 65536.0;
+        model.face(&[[0.0, 0.0, z], [4.0, 0.0, z + 4.0], [0.0, 4.0, z]]);
+    }
+    let scene = model.seen_by("stack", views()[0]);
+    let (built, camera) = (Scene::new(mesh(&scene)), camera(&scene));
+    let refused = depth_sort::solve(&built, &camera).unwrap_err();
+    assert!(matches!(refused, depth_sort::DepthSortError::TooManyPairs(_)), "{refused}");
 }

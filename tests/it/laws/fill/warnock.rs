@@ -185,3 +185,20 @@ fn windows_divided_at_vertices_are_fewer() {
     // Only the fourth middle, after 8, 4 and 6, is the corner.
     assert_eq!([found.windows, found.divided, found.leaves], [17, 4, 0]);
 }
+
+#[test]
+fn windows_away_from_a_crossing_are_covered_by_the_nearer_face() {
+    let mut model = crate::scenes::Model::default();
+    for slope in [1.0, -1.0] {
+        let at = |x: f64, y: f64| [x, y, slope * x];
+        model.face(&[at(-8.0, -8.0), at(8.0, -8.0), at(8.0, 8.0), at(-8.0, 8.0)]);
+    }
+    let sight = crate::scenes::orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+    let scene = model.seen_by("crossing slopes", sight);
+    let camera = crate::laws::engines::camera(&scene);
+    let scene = Scene::new(crate::laws::engines::mesh(&scene));
+    let options = WarnockOptions { leaf: Some(0.25), ..WarnockOptions::default() };
+    let (_, counts) = solve(&scene, &camera, &options).unwrap();
+    // 64 by 64 leaves, of which those along the crossing alone are decided one by one.
+    assert!(counts.leaves <= 2 * 64 && counts.covered >= 2, "{counts:?}");
+}

@@ -4,7 +4,6 @@ use crate::laws::engines::{camera, mesh};
 use crate::scenes::{Model, orthographic};
 use hiddenline::model::scene::Scene;
 use hiddenline::shading::preview::{PreviewOptions, Show, write};
-use hiddenline::stats::Seconds;
 
 /// Columns and rows.
 const SIZE: (u32, u32) = (40, 40);
@@ -22,7 +21,7 @@ fn picture(model: Model, show: Show) -> impl Fn(f64, f64) -> [u8; 3] {
         ..PreviewOptions::default()
     };
     let mut bytes = Vec::new();
-    write(&built, &camera, &options, None, &mut bytes, &mut Seconds::default()).unwrap();
+    write(&built, &camera, &options, None, &mut bytes).unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();

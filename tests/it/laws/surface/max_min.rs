@@ -277,3 +277,32 @@ fn an_eye_nearly_in_the_plane_of_a_grid_line_loses_nothing_of_it() {
     let found: f64 = pieces.iter().map(|piece| piece.t1 - piece.t0).sum();
     assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
 }
+
+#[test]
+fn a_vertical_view_sees_the_upper_side_from_above_and_the_lower_side_from_below() {
+    let grid = rough(&mut Dice(4), 0, 5, 4);
+    for (height, side) in [(90.0, SurfaceSide::Upper), (-90.0, SurfaceSide::Lower)] {
+        let camera =
+            camera(dvec3(1.0, 1.0, height), dvec3(1.0, 1.0, 0.0), Projection::Orthographic);
+        let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
+        assert!(pieces.iter().all(|piece| piece.side == side), "{height}");
+    }
+}
+
+#[test]
+fn only_cells_between_the_eye_and_the_near_plane_are_in_its_way() {
+    // The eye looks along x from 0; the near plane is at x = 1.
+    let near = Projection::Perspective { fov_deg: 40.0, near: 1.0 };
+    let camera = camera(dvec3(0.0, 0.0, 5.0), dvec3(1.0, 0.0, 5.0), near);
+    let is_clear = |from: f64, to: f64| {
+        let middle = 0.5 * from + 0.5 * to;
+        let xs = vec![from, middle, to];
+        let grid = Grid::new(xs, vec![-1.0, 1.0], vec![0.0; 6]).expect("a grid");
+        max_min::is_clear_of_near_plane(&grid, &camera)
+    };
+    assert!(is_clear(1.0, 4.0), "beyond");
+    assert!(is_clear(-4.0, 0.0), "behind the eye");
+    assert!(!is_clear(0.25, 0.75), "between both");
+    assert!(!is_clear(0.5, 2.0), "across the near plane");
+    assert!(!is_clear(-0.5, 0.5), "across the eye");
+}

@@ -366,3 +366,21 @@ fn surfaces_of_which_most_is_passed_over_equal_all_pairs() {
         assert!((by_cells - by_triangles).abs() < 1e-7, "{round}: {by_cells}, {by_triangles}");
     }
 }
+
+#[test]
+fn triangles_that_come_before_each_other_in_turn_are_left_to_mesh_engines() {
+    let at = |deg: f64, radius: f64| {
+        let (sin, cos) = deg.to_radians().sin_cos();
+        dvec3(radius * cos, radius * sin, 0.0)
+    };
+    // A pinwheel: from its middle every blade lies behind the next one.
+    let mut points: Vec<DVec3> = [5.0, 125.0, 245.0].map(|deg| at(deg, 10.0)).to_vec();
+    points.extend([30.0, 150.0, 270.0].map(|deg| at(deg, 1.0)));
+    let triangles = [[0, 4, 3], [0, 1, 4], [1, 5, 4], [1, 2, 5], [2, 3, 5], [2, 0, 3], [3, 4, 5]];
+    let mut mesh = LinedMesh::default();
+    mesh.push_triangles(&points, &triangles, true);
+    let surface = mesh.into_scene().expect("a scene");
+    let above = |x: f64, y: f64| camera(dvec3(x, y, 5.0), dvec3(x, y, 0.0), PERSPECTIVE);
+    assert!(!check(&surface, &above(0.0, 0.0), "pinwheel"));
+    assert!(check(&surface, &above(40.0, 3.0), "from beside it"));
+}
