@@ -3,7 +3,8 @@
 use divan::Bencher;
 use glam::{DVec3, dvec3};
 use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
+use hiddenline::chain::grid_lines::{Lines, strokes};
+use hiddenline::engines::surface::{CellOrder, max_min};
 use hiddenline::surface::Grid;
 use hiddenline::surface::formula::{Formula, Variables};
 

@@ -6,7 +6,8 @@ use glam::dvec3;
 
 use hiddenline::axes::{Titles, axes};
 use hiddenline::camera::framing::Framing;
-use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
+use hiddenline::chain::grid_lines::{Lines, strokes};
+use hiddenline::engines::surface::{CellOrder, max_min};
 use hiddenline::page::{Page, PageOptions};
 use hiddenline::plot::Plot;
 use hiddenline::surface::formula::{Formula, Variables};

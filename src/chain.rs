@@ -12,6 +12,9 @@
 //!        ╱   ╲
 //! ```
 
+pub mod grid_lines;
+mod pen_path;
+
 use crate::classify::ViewedScene;
 use crate::engines::edge::outline::Outline;
 use crate::engines::visibility::{Span, Visibility};

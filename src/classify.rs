@@ -21,15 +21,12 @@
 //! face is then turned over for the comparison, so kinds do not depend on the winding.
 
 use crate::camera::{Camera, ImagePoint};
-use crate::model::mesh::Mesh;
 use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
-use crate::model::triangulate::newell_normal;
 use crate::predicates::{PiercePoint, Sight, Sign, exact};
 use crate::strokes::StrokeKind;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Faces that meet at more than this angle, in degrees, make a crease unless set otherwise.
 pub const DEFAULT_CREASE_DEG: f64 = 30.0;
@@ -330,8 +327,7 @@ impl<'a> ViewedScene<'a> {
     /// The edges to draw, each with whether all of it is wanted and not only the outline.
     fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<(DrawnEdge, bool)> {
         let n_edges = self.scene.topology().edges().len() as u32;
-        let creases = Creases::new(crease_deg);
-        let borders = Borders::new(self.scene.mesh(), lines);
+        let creases = Creases::new(self.scene, lines, crease_deg);
         let of_outline = LineSelection::NONE
             .with(StrokeKind::Silhouette)
             .with(StrokeKind::Boundary)
@@ -340,10 +336,10 @@ impl<'a> ViewedScene<'a> {
             .into_par_iter()
             .with_min_len(4096)
             .filter_map(|edge| {
-                let whole = self.kind(edge, lines, &creases, &borders);
+                let whole = self.kind(edge, lines, &creases);
                 let kind = whole.or_else(|| {
                     let outlined = lines.has_outline();
-                    outlined.then(|| self.kind(edge, of_outline, &creases, &borders))?
+                    outlined.then(|| self.kind(edge, of_outline, &creases))?
                 })?;
                 let [a, b] = self.scene.topology().edge(edge);
                 let drawn = (DrawnEdge { edge, kind }, whole.is_some());
@@ -420,17 +416,12 @@ impl<'a> ViewedScene<'a> {
     }
 
     /// The first kind that applies to an edge, when any that applies is among `lines`.
-    fn kind(
-        &self,
-        edge: u32,
-        lines: LineSelection,
-        creases: &Creases,
-        borders: &Borders,
-    ) -> Option<StrokeKind> {
+    fn kind(&self, edge: u32, lines: LineSelection, creases: &Creases) -> Option<StrokeKind> {
         let topology = self.scene.topology();
         let every = lines.contains(StrokeKind::Mesh);
-        let by_material =
-            || lines.contains(StrokeKind::Material) && borders.lie_between(topology.uses(edge));
+        let by_material = || {
+            lines.contains(StrokeKind::Material) && creases.lie_between_groups(topology.uses(edge))
+        };
         let chosen = |kind| (every || lines.contains(kind)).then_some(kind);
         let &[first, second] = topology.uses(edge) else {
             let is_boundary = topology.uses(edge).len() == 1;
@@ -441,7 +432,7 @@ impl<'a> ViewedScene<'a> {
         let against = first.runs_upwards() == second.runs_upwards();
         let [facing, other] = faces.map(|face| self.facing_along(face, edge));
         let other = if against { other.flipped() } else { other };
-        let is_crease = || creases.holds(faces.map(|face| self.normal(face)), against);
+        let is_crease = || creases.holds(faces.map(|face| creases.normal(face)), against);
         if (facing == Sign::Positive) != (other == Sign::Positive) {
             let by_crease = || lines.contains(StrokeKind::Crease) && is_crease();
             let by_name = every || lines.contains(StrokeKind::Silhouette);
@@ -459,46 +450,38 @@ impl<'a> ViewedScene<'a> {
             (false, false) => chosen(StrokeKind::Mesh),
         }
     }
-
-    fn normal(&self, face: u32) -> DVec3 {
-        newell_normal(self.scene.mesh().positions(), self.scene.mesh().face(face))
-    }
 }
 
-/// Where materials and groups meet.
-struct Borders {
-    /// For each face a number that faces of equal group and material share; empty when nobody asks.
-    of_faces: Vec<u32>,
+/// What tells creases and borders of materials, as far as it is asked for.
+struct Creases<'a> {
+    /// Of the crease angle.
+    cosine: f64,
+    /// Of each face, or empty.
+    normals: &'a [DVec3],
+    /// For each face a number that faces of equal group and material share, or empty.
+    groups: &'a [u32],
 }
 
-impl Borders {
-    fn new(mesh: &Mesh, lines: LineSelection) -> Self {
-        if !lines.contains(StrokeKind::Material) {
-            return Self { of_faces: Vec::new() };
+impl<'a> Creases<'a> {
+    fn new(scene: &'a Scene, lines: LineSelection, crease_deg: f64) -> Self {
+        let has_materials = lines.contains(StrokeKind::Material);
+        let has_creases =
+            has_materials || lines.contains(StrokeKind::Crease) || lines.contains(StrokeKind::Mesh);
+        Self {
+            cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()),
+            normals: if has_creases { scene.normals() } else { &[] },
+            groups: if has_materials { scene.groups() } else { &[] },
         }
-        let mut first = HashMap::new();
-        let names = mesh.parts().iter().map(|part| (&part.group, &part.material));
-        let numbers: Vec<u32> =
-            (0..).zip(names).map(|(i, names)| *first.entry(names).or_insert(i)).collect();
-        let of_faces = mesh.face_parts().iter().map(|&part| numbers[part as usize]).collect();
-        Self { of_faces }
     }
 
     /// Whether the faces along an edge are not all of one group and material.
-    fn lie_between(&self, uses: &[EdgeUse]) -> bool {
-        let part = |along: &EdgeUse| self.of_faces.get(along.face() as usize);
-        uses.windows(2).any(|pair| part(&pair[0]) != part(&pair[1]))
+    fn lie_between_groups(&self, uses: &[EdgeUse]) -> bool {
+        let group = |along: &EdgeUse| self.groups.get(along.face() as usize);
+        uses.windows(2).any(|pair| group(&pair[0]) != group(&pair[1]))
     }
-}
 
-/// The crease angle as its cosine.
-struct Creases {
-    cosine: f64,
-}
-
-impl Creases {
-    fn new(crease_deg: f64) -> Self {
-        Self { cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()) }
+    fn normal(&self, face: u32) -> DVec3 {
+        self.normals.get(face as usize).copied().unwrap_or_default()
     }
 
     /// Whether faces with these normals meet at more than the crease angle.

@@ -69,9 +69,9 @@ pub mod axes;
 
 pub mod draw;
 
-pub mod shading;
-
 pub mod plot;
+
+pub mod shading;
 
 pub mod page;
 

@@ -16,7 +16,8 @@ use clap::{ArgMatches, Command};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{machine, output, usage};
+use super::suggestion::suggestion;
+use super::{file, usage};
 
 /// Settings of the folder.
 const PROJECT_FILE: &str = "hiddenline.toml";
@@ -235,7 +236,7 @@ fn layers(preset: Option<String>, command: &str) -> Result<Vec<Layer>, ConfigErr
             let known: Vec<&str> = preset_names(&files);
             let suggestion = match known.as_slice() {
                 [] => "; no configuration file has any".to_owned(),
-                known => machine::suggestion(&name, known.iter().copied()),
+                known => suggestion(&name, known.iter().copied()),
             };
             return Err(ConfigError::NoPreset { name, suggestion, command: command.to_owned() });
         };
@@ -380,5 +381,5 @@ pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
         }
         seen.extend(names);
     }
-    output::write_to_stdout(|out| out.write_all(text.as_bytes())).map_err(Into::into)
+    file::write_to_stdout(|out| out.write_all(text.as_bytes())).map_err(Into::into)
 }

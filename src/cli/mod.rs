@@ -3,6 +3,7 @@
 mod camera;
 mod config;
 mod draw;
+mod file;
 mod fill;
 mod formulas;
 mod input;
@@ -20,6 +21,7 @@ mod progress;
 mod scene;
 mod source;
 mod stats;
+mod suggestion;
 mod surface;
 mod usage;
 mod values;
@@ -149,7 +151,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut usage::command(), "hiddenline", &mut script);
-            output::write_to_stdout(|out| out.write_all(&script)).map_err(Into::into)
+            file::write_to_stdout(|out| out.write_all(&script)).map_err(Into::into)
         }
         Command::Man { command } => man(command.as_deref()),
     };
@@ -190,7 +192,7 @@ fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
     };
     let mut page = Vec::new();
     clap_mangen::Man::new(chosen).render(&mut page)?;
-    output::write_to_stdout(|out| out.write_all(&page)).map_err(Into::into)
+    file::write_to_stdout(|out| out.write_all(&page)).map_err(Into::into)
 }
 
 /// Whether whoever reads our output has closed it: no failure of ours.

@@ -1,6 +1,5 @@
 //! The output: where the drawing goes, in what format, and what is told on the way.
 
-mod file;
 mod place;
 
 use std::path::{Path, PathBuf};
@@ -10,7 +9,6 @@ use hiddenline::write::Format;
 use hiddenline::write::png::{Marks, Resolution};
 use hiddenline::write::svg::StrokeElement;
 
-pub(super) use self::file::{write_to_file, write_to_stdout};
 pub(super) use self::place::check_place;
 use super::machine::Target;
 use super::paths::is_dash;

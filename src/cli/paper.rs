@@ -22,7 +22,7 @@ use super::output::OutputOptions;
 use super::plotting::Finished;
 use super::progress::Progress;
 use super::stats::{PlotStats, Stats, peak_bytes};
-use super::{messages, output};
+use super::{file, messages};
 
 /// What reading has to tell, for when all went well.
 #[derive(Default)]
@@ -224,8 +224,8 @@ impl<'a> Run<'a> {
         let mut write_seconds = 0.0;
         timed(&mut write_seconds, || -> Result<(), Box<dyn Error>> {
             match path {
-                None => Ok(output::write_to_stdout(write)?),
-                Some(path) => output::write_to_file(path, write)
+                None => Ok(file::write_to_stdout(write)?),
+                Some(path) => file::write_to_file(path, write)
                     .map_err(|error| format!("cannot write {}: {error}", path.display()).into()),
             }
         })?;

@@ -1,6 +1,6 @@
 //! Paths as they are typed.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Whether a path stands for standard input or standard output.
 pub(super) fn is_dash(path: &Path) -> bool {
@@ -13,4 +13,10 @@ pub(super) fn title(path: &Path) -> String {
         return "standard input".to_owned();
     }
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The folder that a file is to be created in, if it is not there.
+pub(super) fn missing_folder(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty())?;
+    (!folder.is_dir()).then(|| folder.to_owned())
 }

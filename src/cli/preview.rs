@@ -23,7 +23,7 @@ use super::paths::is_dash;
 use super::progress::Progress;
 use super::scene::Subject;
 use super::stats::peak_bytes;
-use super::{Refused, messages, output};
+use super::{Refused, file, messages};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -158,9 +158,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         Ok(())
     };
     match &job.path {
-        Some(path) => output::write_to_file(path, write)
+        Some(path) => file::write_to_file(path, write)
             .map_err(|error| format!("{}: {error}", path.display()))?,
-        None => output::write_to_stdout(write)?,
+        None => file::write_to_stdout(write)?,
     }
     drop(progress);
     seconds.total = start.elapsed().as_secs_f64();

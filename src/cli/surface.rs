@@ -1,6 +1,7 @@
 //! `hiddenline surface`: from a formula or a grid of heights to a drawing's file.
 
 mod args;
+mod engine;
 mod sheet_args;
 mod sheets;
 mod smoothness;
@@ -10,11 +11,12 @@ use std::error::Error;
 use glam::{DVec2, DVec3};
 use hiddenline::axes::{Titles, axes, missing};
 use hiddenline::camera::{Camera, Projection};
+use hiddenline::chain::grid_lines::{Lines, strokes};
 use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines, meshed};
 use hiddenline::engines::edge::Engine;
 use hiddenline::engines::surface::floating_horizon::Family;
 use hiddenline::engines::surface::{
-    CellOrder, GridPieces, Lines, SurfaceError, SurfaceSide, floating_horizon, max_min, strokes,
+    CellOrder, GridPieces, SurfaceError, SurfaceSide, floating_horizon, max_min,
 };
 use hiddenline::optimize::{Effort, Options};
 use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
@@ -23,8 +25,9 @@ use hiddenline::surface::{Grid, LatticeLines, LinedScene};
 use hiddenline::timing::timed;
 use hiddenline::write::Format;
 
+use self::args::Levels;
 pub(super) use self::args::SurfaceArgs;
-use self::args::{EngineName, Levels};
+use self::engine::{EngineName, only_grid};
 pub(super) use self::sheet_args::{DEFAULT_SAMPLES, SheetArgs};
 pub(super) use self::sheets::Sheets;
 use self::sheets::{NO_CELLS, Surface};
@@ -89,7 +92,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.notes.warnings.extend(without_levels(job, bounds, factor)?);
     let lines = Lines { every: job.lines.every.saturating_mul(refined), ..job.lines };
     run.progress.stage("drawing");
-    let grid = surface.only_grid(job, &camera)?;
+    let grid = only_grid(&surface, job, &camera)?;
     if grid.is_none() && job.order.is_some() {
         return Err("--order needs one surface z = f(x, y) over a rectangle without holes, drawn \
                     with grid lines only: leave --order out"

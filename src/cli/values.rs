@@ -9,7 +9,7 @@ use hiddenline::page::{Dash, Drawn, parse_length_mm};
 use hiddenline::shading::preview::LARGEST_SIDE;
 use hiddenline::strokes::StrokeKind;
 
-use super::machine;
+use super::suggestion::suggestion;
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
@@ -120,7 +120,7 @@ pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
             "mesh" => lines.with(StrokeKind::Mesh),
             "outline" => lines.with_outline(),
             other => {
-                let hint = machine::suggestion(other, KINDS_OF_LINE.into_iter());
+                let hint = suggestion(other, KINDS_OF_LINE.into_iter());
                 return Err(format!("`{other}` is no kind of line{hint}"));
             }
         })
@@ -198,7 +198,7 @@ fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
     all().find(|drawn| drawn.name() == name).ok_or_else(|| {
         let names: Vec<_> = all().map(Drawn::name).collect();
         let names = names.iter().map(AsRef::as_ref);
-        format!("no pen draws `{name}`{}", machine::suggestion(name, names))
+        format!("no pen draws `{name}`{}", suggestion(name, names))
     })
 }
 

@@ -16,9 +16,12 @@ use crate::model::bends::{Bend, bends};
 use crate::model::intersections::Intersections;
 use crate::model::mesh::Mesh;
 use crate::model::topology::Topology;
-use crate::model::triangulate::triangulate;
+use crate::model::triangulate::{newell_normal, triangulate};
 use crate::predicates::PiercePoint;
 use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// A line that is not an edge of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +54,8 @@ pub struct Scene {
     bends: Vec<Bend>,
     /// All lines that are not edges of faces: intersections, then bends, then wires.
     lines: Vec<SceneLine>,
+    normals: OnceLock<Vec<DVec3>>,
+    groups: OnceLock<Vec<u32>>,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
     points: Vec<DVec3>,
 }
@@ -155,6 +160,27 @@ impl Scene {
         if self.points.is_empty() { self.mesh.positions() } else { &self.points }
     }
 
+    /// The Newell normal of each face, not normalized. Computed when first asked for; O(corners), in
+    /// parallel.
+    pub fn normals(&self) -> &[DVec3] {
+        computed_once(&self.normals, || {
+            let faces = (0..self.mesh.n_faces() as u32).into_par_iter();
+            faces.map(|face| newell_normal(self.mesh.positions(), self.mesh.face(face))).collect()
+        })
+    }
+
+    /// For each face a number that faces of equal group and material share; empty when the model
+    /// names neither. Computed when first asked for.
+    pub fn groups(&self) -> &[u32] {
+        computed_once(&self.groups, || {
+            let mut first = HashMap::new();
+            let names = self.mesh.parts().iter().map(|part| (&part.group, &part.material));
+            let numbers: Vec<u32> =
+                (0..).zip(names).map(|(i, names)| *first.entry(names).or_insert(i)).collect();
+            self.mesh.face_parts().iter().map(|&part| numbers[part as usize]).collect()
+        })
+    }
+
     /// The lines that are not edges of faces. Their numbers follow those of the edges.
     pub fn other_lines(&self) -> &[SceneLine] {
         &self.lines
@@ -180,5 +206,20 @@ impl Scene {
     pub fn source(&self, line: u32) -> Option<LineSource> {
         let number = (line as usize).checked_sub(self.topology.edges().len())?;
         self.lines.get(number).map(|line| line.source)
+    }
+}
+
+/// What a cell holds, computed if it holds nothing yet.
+///
+/// Views may be drawn in parallel, and `compute` works in parallel itself. So the cell is not locked
+/// meanwhile: a thread that took over another view's work would wait for itself. Two threads may both
+/// compute the same.
+fn computed_once<T>(cell: &OnceLock<Vec<T>>, compute: impl FnOnce() -> Vec<T>) -> &[T] {
+    match cell.get() {
+        Some(known) => known,
+        None => {
+            let computed = compute();
+            cell.get_or_init(|| computed)
+        }
     }
 }

@@ -15,7 +15,7 @@
 
 use super::exact::{self, Dyadic};
 use super::pierced::ratio;
-use super::planes::{PlaneName, Planes, spread};
+use super::planes::{Plane, PlaneName, Planes, evaluated, spread};
 use super::{Estimate, Homogeneous, Sign, TRIPLE_PRODUCT_ERROR, Viewpoint};
 use glam::DVec3;
 
@@ -46,6 +46,26 @@ pub struct Corner {
 const CORNER_ERROR: f64 = 1.0 / (1u64 << 44) as f64;
 
 impl Planes<'_> {
+    /// The value of a plane at a corner, and its sign.
+    ///
+    /// The estimate need not have that sign where it is within its own error.
+    #[inline]
+    pub fn side(&self, plane: &Plane, corner: &Corner) -> (Estimate, Sign) {
+        if is_known_within(&corner.place, plane) {
+            return (Estimate::ZERO, Sign::Zero);
+        }
+        let d = corner.point - plane.base;
+        let estimate = Estimate {
+            value: plane.normal.dot(d) - plane.offset,
+            error: TRIPLE_PRODUCT_ERROR * (plane.spread.dot(d.abs()) + plane.offset)
+                + 2.0 * corner.error * plane.spread.element_sum(),
+        };
+        let sign = self.settle(estimate, || {
+            evaluated(&self.coefficients(plane.name), &self.homogeneous(&corner.place)).sign()
+        });
+        (estimate, sign)
+    }
+
     /// A vertex as a corner.
     #[inline]
     pub fn vertex(&self, vertex: u32) -> Corner {
@@ -125,6 +145,35 @@ impl Planes<'_> {
             exact::dot(&normal, &between(&a, &d)).sign()
         })
     }
+
+    /// A place in homogeneous coordinates.
+    fn homogeneous(&self, place: &Place) -> Homogeneous {
+        match *place {
+            Place::Vertex(vertex) => Homogeneous::from(self.position(vertex)),
+            Place::OnEdge(ends, plane) => {
+                let plane = self.coefficients(plane);
+                let [p, q] = ends.map(|vertex| Homogeneous::from(self.position(vertex)));
+                let (of_p, of_q) = (evaluated(&plane, &p), evaluated(&plane, &q));
+                let w = of_p.clone() - of_q.clone();
+                let x = std::array::from_fn(|i| {
+                    q.x[i].clone() * of_p.clone() - p.x[i].clone() * of_q.clone()
+                });
+                turned(x, w)
+            }
+            Place::InFace(planes) => {
+                let [a, b, c] = planes.map(|plane| self.coefficients(plane));
+                let normal = |p: &[Dyadic; 4]| [p[0].clone(), p[1].clone(), p[2].clone()];
+                let products = [(&b, &c), (&c, &a), (&a, &b)]
+                    .map(|(p, q)| exact::cross(&normal(p), &normal(q)));
+                let w = exact::dot(&normal(&a), &products[0]);
+                let x = std::array::from_fn(|i| {
+                    let term = |k: usize, p: &[Dyadic; 4]| p[3].clone() * products[k][i].clone();
+                    -(term(0, &a) + term(1, &b) + term(2, &c))
+                });
+                turned(x, w)
+            }
+        }
+    }
 }
 
 /// A triple product of differences, each known but for an error of its components.
@@ -136,6 +185,26 @@ fn triple((u, du): (DVec3, f64), (v, dv): (DVec3, f64), (t, dt): (DVec3, f64)) -
     Estimate {
         value: u.cross(v).dot(t),
         error: TRIPLE_PRODUCT_ERROR * spread(u, v).dot(t.abs()) + from_errors,
+    }
+}
+
+/// Whether the numbers of a place tell that it lies in a plane.
+#[inline]
+fn is_known_within(place: &Place, plane: &Plane) -> bool {
+    let has = |vertex: &u32| plane.vertices.contains(vertex);
+    match place {
+        Place::Vertex(vertex) => has(vertex),
+        Place::OnEdge(ends, cut) => *cut == plane.name || ends.iter().all(has),
+        Place::InFace(planes) => planes.contains(&plane.name),
+    }
+}
+
+/// With a positive divisor.
+fn turned(x: [Dyadic; 3], w: Dyadic) -> Homogeneous {
+    if w.sign() == Sign::Negative {
+        Homogeneous { x: x.map(|x| -x), w: -w }
+    } else {
+        Homogeneous { x, w }
     }
 }
 

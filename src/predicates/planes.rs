@@ -12,7 +12,6 @@
 //! signs are, see [`super`]. Cutting faces by planes and keeping the planes, not rounded corners, is
 //! the plane-based representation of G. Bernstein, D. Fussell, "Fast, exact, linear booleans" (2009).
 
-use super::corner::{Corner, Place};
 use super::exact::{self, Dyadic};
 use super::sight::fits_filter;
 use super::{Estimate, Homogeneous, Sign, TRIPLE_PRODUCT_ERROR, Viewpoint};
@@ -40,13 +39,13 @@ pub enum PlaneName {
 /// A plane made ready for many questions.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane {
-    name: PlaneName,
-    normal: DVec3,
+    pub(super) name: PlaneName,
+    pub(super) normal: DVec3,
     /// The sums of the absolute values of the terms of each component of the normal.
-    spread: DVec3,
-    base: DVec3,
-    offset: f64,
-    vertices: [u32; 3],
+    pub(super) spread: DVec3,
+    pub(super) base: DVec3,
+    pub(super) offset: f64,
+    pub(super) vertices: [u32; 3],
 }
 
 impl Plane {
@@ -186,26 +185,6 @@ impl<'a> Planes<'a> {
         }
     }
 
-    /// The value of a plane at a corner, and its sign.
-    ///
-    /// The estimate need not have that sign where it is within its own error.
-    #[inline]
-    pub fn side(&self, plane: &Plane, corner: &Corner) -> (Estimate, Sign) {
-        if is_known_within(&corner.place, plane) {
-            return (Estimate::ZERO, Sign::Zero);
-        }
-        let d = corner.point - plane.base;
-        let estimate = Estimate {
-            value: plane.normal.dot(d) - plane.offset,
-            error: TRIPLE_PRODUCT_ERROR * (plane.spread.dot(d.abs()) + plane.offset)
-                + 2.0 * corner.error * plane.spread.element_sum(),
-        };
-        let sign = self.settle(estimate, || {
-            evaluated(&self.coefficients(plane.name), &self.homogeneous(&corner.place)).sign()
-        });
-        (estimate, sign)
-    }
-
     /// On which side of a plane the observer is. Zero without a camera.
     ///
     /// In orthographic projection the observer is infinitely far away, against the direction of view.
@@ -260,35 +239,6 @@ impl<'a> Planes<'a> {
         let [x, y, z] = normal;
         [x, y, z, at_origin]
     }
-
-    /// A place in homogeneous coordinates.
-    pub(super) fn homogeneous(&self, place: &Place) -> Homogeneous {
-        match *place {
-            Place::Vertex(vertex) => Homogeneous::from(self.position(vertex)),
-            Place::OnEdge(ends, plane) => {
-                let plane = self.coefficients(plane);
-                let [p, q] = ends.map(|vertex| Homogeneous::from(self.position(vertex)));
-                let (of_p, of_q) = (evaluated(&plane, &p), evaluated(&plane, &q));
-                let w = of_p.clone() - of_q.clone();
-                let x = std::array::from_fn(|i| {
-                    q.x[i].clone() * of_p.clone() - p.x[i].clone() * of_q.clone()
-                });
-                turned(x, w)
-            }
-            Place::InFace(planes) => {
-                let [a, b, c] = planes.map(|plane| self.coefficients(plane));
-                let normal = |p: &[Dyadic; 4]| [p[0].clone(), p[1].clone(), p[2].clone()];
-                let products = [(&b, &c), (&c, &a), (&a, &b)]
-                    .map(|(p, q)| exact::cross(&normal(p), &normal(q)));
-                let w = exact::dot(&normal(&a), &products[0]);
-                let x = std::array::from_fn(|i| {
-                    let term = |k: usize, p: &[Dyadic; 4]| p[3].clone() * products[k][i].clone();
-                    -(term(0, &a) + term(1, &b) + term(2, &c))
-                });
-                turned(x, w)
-            }
-        }
-    }
 }
 
 /// The sums of the absolute values of the terms of a cross product.
@@ -297,27 +247,7 @@ pub(super) fn spread(a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
 }
 
-/// Whether the numbers of a place tell that it lies in a plane.
-#[inline]
-fn is_known_within(place: &Place, plane: &Plane) -> bool {
-    let has = |vertex: &u32| plane.vertices.contains(vertex);
-    match place {
-        Place::Vertex(vertex) => has(vertex),
-        Place::OnEdge(ends, cut) => *cut == plane.name || ends.iter().all(has),
-        Place::InFace(planes) => planes.contains(&plane.name),
-    }
-}
-
-fn evaluated(plane: &[Dyadic; 4], x: &Homogeneous) -> Dyadic {
+pub(super) fn evaluated(plane: &[Dyadic; 4], x: &Homogeneous) -> Dyadic {
     let [a, b, c, d] = plane.clone();
     exact::dot(&[a, b, c], &x.x) + d * x.w.clone()
-}
-
-/// With a positive divisor.
-fn turned(x: [Dyadic; 3], w: Dyadic) -> Homogeneous {
-    if w.sign() == Sign::Negative {
-        Homogeneous { x: x.map(|x| -x), w: -w }
-    } else {
-        Homogeneous { x, w }
-    }
 }

@@ -22,7 +22,6 @@ use crate::engines::face::{
 };
 use crate::model::mesh::Part;
 use crate::model::scene::Scene;
-use crate::model::triangulate::newell_normal;
 use crate::plot::Fills;
 use crate::shading::light::{
     DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes,
@@ -282,7 +281,7 @@ impl<'a> Shader<'a> {
         }
         let positions = self.scene.mesh().positions();
         let corners = self.scene.mesh().face(face);
-        let normal = newell_normal(positions, corners);
+        let normal = self.scene.normals()[face as usize];
         let first = corners.first().map_or(DVec3::ZERO, |&v| positions[v as usize]);
         let sight = match self.camera.projection() {
             Projection::Perspective { .. } => first - self.camera.eye(),

@@ -1,10 +1,10 @@
 //! Whether the output may be written where it is to go.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::cli::Refused;
-use crate::cli::paths::is_dash;
+use crate::cli::paths::{is_dash, missing_folder};
 
 /// Refuses an output that would replace one of the files that are read, whatever it is called there,
 /// and one in a folder that does not exist.
@@ -34,10 +34,4 @@ pub(in crate::cli) fn check_place<P: AsRef<Path>>(
         }
     }
     Ok(())
-}
-
-/// The folder that a file is to be created in, if it is not there.
-pub(super) fn missing_folder(path: &Path) -> Option<PathBuf> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty())?;
-    (!folder.is_dir()).then(|| folder.to_owned())
 }

@@ -2,11 +2,13 @@
 
 use clap::{Args, ValueEnum};
 use hiddenline::axes::Titles;
-use hiddenline::engines::surface::{CellOrder, Lines};
+use hiddenline::chain::grid_lines::Lines;
+use hiddenline::engines::surface::CellOrder;
 
 use super::Job;
-use super::sheet_args::{Aspect, DEFAULT_SAMPLES, SheetArgs};
-use super::sheets::Input;
+use super::engine::EngineName;
+use super::sheet_args::{DEFAULT_SAMPLES, SheetArgs};
+use super::sheets::{Aspect, Input};
 use crate::cli::camera::CameraArgs;
 use crate::cli::output::{OutputArgs, check_place};
 use crate::cli::page::PageArgs;
@@ -141,15 +143,6 @@ enum LineName {
     Intersection,
     Border,
     Mesh,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub(super) enum EngineName {
-    Auto,
-    MaxMin,
-    FloatingHorizon,
-    Roberts,
-    Appel,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{MAX_SAMPLES, Placement};
 
-use super::sheets::{Input, Sheets};
+use super::sheets::{Aspect, Input, Sheets};
 use crate::cli::formulas::in_formula;
 use crate::cli::values;
 
@@ -67,12 +67,6 @@ pub(in crate::cli) struct SheetArgs {
     /// side of its base, then by --z-scale. The default is box, but data with --parametric.
     #[arg(long, value_enum)]
     aspect: Option<Aspect>,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub(in crate::cli) enum Aspect {
-    Box,
-    Data,
 }
 
 impl SheetArgs {

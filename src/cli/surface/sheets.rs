@@ -4,21 +4,18 @@ use std::error::Error;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use glam::DVec3;
-use hiddenline::engines::surface::max_min;
 use hiddenline::extent::Extent;
 use hiddenline::model::mesh::Mesh;
 use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{
-    Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
-    delaunay, evenly, lattice_extent, read_heights, read_points,
+    Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams, delaunay,
+    evenly, lattice_extent, read_heights, read_points,
 };
 
 use hiddenline::camera::Camera;
 
-use super::Job;
-use super::args::EngineName;
-use super::sheet_args::Aspect;
 use crate::cli::paper::Notes;
 use crate::cli::paths;
 
@@ -53,6 +50,13 @@ pub(in crate::cli) enum Input {
         v: (f64, f64),
         samples: (usize, usize),
     },
+}
+
+/// Whether heights are drawn to the scale of x and y.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub(in crate::cli) enum Aspect {
+    Box,
+    Data,
 }
 
 /// A surface as it is asked for.
@@ -161,41 +165,6 @@ impl Surface {
             Self::Lattice { n_columns, points } => mesh.push_lattice(*n_columns, points, lines),
         }
         mesh
-    }
-
-    /// The grid, if it is all there is and an engine for grids is to draw it.
-    ///
-    /// Fails when that engine was asked for but cannot draw what the near plane leaves of it.
-    pub(super) fn only_grid(&self, job: &Job, camera: &Camera) -> Result<Option<&Grid>, String> {
-        let Some(grid) = self.candidate(job) else {
-            return Ok(None);
-        };
-        if max_min::is_clear_of_near_plane(grid, camera) {
-            return Ok(Some(grid));
-        }
-        match job.engine {
-            EngineName::Auto => Ok(None),
-            _ => Err("the near plane cuts the surface: give --engine auto".into()),
-        }
-    }
-
-    fn candidate(&self, job: &Job) -> Option<&Grid> {
-        let has_grid_lines = job.lines.along_x || job.lines.along_y;
-        let needs_mesh = job.levels.is_some()
-            || job.folds
-            || job.border
-            || job.intersections
-            || job.all_edges
-            || !has_grid_lines;
-        match (self, job.engine) {
-            (_, EngineName::Roberts | EngineName::Appel) => None,
-            (Self::Grids(grids), EngineName::Auto | EngineName::MaxMin) => {
-                let grid = grids.first().filter(|_| grids.len() == 1 && !needs_mesh)?;
-                (grid.holes() == Holes::None).then_some(grid)
-            }
-            (Self::Grids(grids), EngineName::FloatingHorizon) => grids.first(),
-            _ => None,
-        }
     }
 
     /// All samples that are on lines, one lattice for each sheet.

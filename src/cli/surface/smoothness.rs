@@ -13,7 +13,7 @@ use hiddenline::camera::{Camera, Projection};
 use hiddenline::page::Page;
 
 use super::Job;
-use super::args::EngineName;
+use super::engine::{EngineName, only_grid};
 use super::sheets::{Input, Surface};
 
 /// Most cells along an axis that one cell of the samples asked for is divided into. Kinks and cliffs
@@ -82,7 +82,7 @@ fn finer(
     if deviation_mm <= job.smoothness_mm || refined >= MOST_REFINED {
         return refined;
     }
-    let by_grid = matches!(surface.only_grid(job, camera), Ok(Some(_)));
+    let by_grid = matches!(only_grid(surface, job, camera), Ok(Some(_)));
     let most = if by_grid { MOST_SAMPLES } else { MOST_MESH_SAMPLES };
     let cells = (samples.0 - 1).saturating_mul(samples.1 - 1).max(1);
     let affordable = (most as f64 / cells as f64).sqrt() as usize;

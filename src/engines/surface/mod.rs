@@ -9,10 +9,8 @@
 mod cells;
 pub mod floating_horizon;
 mod horizon;
-mod lines;
 pub mod max_min;
-mod pen_path;
-mod pieces;
+pub(crate) mod pieces;
 mod plan_predicates;
 mod segment;
 mod steps;
@@ -20,7 +18,6 @@ mod strip;
 pub mod tin;
 
 pub use horizon::HorizonCounts;
-pub use lines::{Lines, strokes};
 pub use pieces::{GridPieces, SurfaceSide, VisiblePiece};
 
 use thiserror::Error;

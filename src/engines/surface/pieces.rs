@@ -27,9 +27,9 @@ pub struct VisiblePiece {
 }
 
 pub(super) const HIDDEN: u8 = 0;
-pub(super) const UPPER: u8 = 1;
-pub(super) const LOWER: u8 = 2;
-pub(super) const PARTLY: u8 = 3;
+pub(crate) const UPPER: u8 = 1;
+pub(crate) const LOWER: u8 = 2;
+pub(crate) const PARTLY: u8 = 3;
 
 /// Visible parts of all edges of a grid.
 ///
@@ -39,9 +39,9 @@ pub(super) const PARTLY: u8 = 3;
 pub struct GridPieces {
     pub(super) nx: usize,
     pub(super) ny: usize,
-    pub(super) status: Vec<u8>,
+    pub(crate) status: Vec<u8>,
     /// Of partly visible edges only, by edge and then from t = 0 to 1; disjoint.
-    pub(super) pieces: Vec<VisiblePiece>,
+    pub(crate) pieces: Vec<VisiblePiece>,
     pub(super) work: HorizonCounts,
 }
 

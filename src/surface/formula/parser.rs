@@ -1,7 +1,7 @@
 //! Tokens to a postfix tape, by operator precedence (Pratt 1973).
 
 use super::lexer::{Placed, Token};
-use super::tape::{CONSTANTS, FUNCTIONS, Op, Tape, function};
+use super::tape::{CONSTANTS, FUNCTIONS, Op, Takes, Tape, function};
 use super::{FormulaError, MAX_DEPTH, Problem, Variables};
 
 pub(super) fn parse(tokens: &[Placed], variables: Variables) -> Result<Tape, FormulaError> {
@@ -246,35 +246,6 @@ impl<'a> Parser<'a> {
             self.tape.push(op);
         }
         Ok(())
-    }
-}
-
-/// How many arguments a function takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Takes {
-    One,
-    Two,
-    Three,
-    TwoOrMore,
-}
-
-impl Takes {
-    fn allows(self, given: usize) -> bool {
-        match self {
-            Self::One => given == 1,
-            Self::Two => given == 2,
-            Self::Three => given == 3,
-            Self::TwoOrMore => given >= 2,
-        }
-    }
-
-    fn in_words(self) -> &'static str {
-        match self {
-            Self::One => "1 argument",
-            Self::Two => "2 arguments",
-            Self::Three => "3 arguments",
-            Self::TwoOrMore => "2 or more arguments",
-        }
     }
 }
 

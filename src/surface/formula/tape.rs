@@ -1,7 +1,5 @@
 //! The postfix tape: operations on a stack of blocks of samples.
 
-use super::parser::Takes;
-
 /// Samples evaluated together, so that the cost of finding out what to do is shared.
 const BLOCK: usize = 64;
 
@@ -21,6 +19,35 @@ pub const FUNCTIONS: [&str; 41] = [
     "ceil", "round", "trunc", "fract", "mod", "min", "max", "clamp", "hypot", "if", "sinc", "erf",
     "gamma", "j0", "j1", "y0", "y1",
 ];
+
+/// How many arguments a function takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Takes {
+    One,
+    Two,
+    Three,
+    TwoOrMore,
+}
+
+impl Takes {
+    pub(super) fn allows(self, given: usize) -> bool {
+        match self {
+            Self::One => given == 1,
+            Self::Two => given == 2,
+            Self::Three => given == 3,
+            Self::TwoOrMore => given >= 2,
+        }
+    }
+
+    pub(super) fn in_words(self) -> &'static str {
+        match self {
+            Self::One => "1 argument",
+            Self::Two => "2 arguments",
+            Self::Three => "3 arguments",
+            Self::TwoOrMore => "2 or more arguments",
+        }
+    }
+}
 
 /// One step of the tape.
 #[derive(Debug, Clone, Copy)]

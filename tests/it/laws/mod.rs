@@ -9,6 +9,7 @@ pub(crate) mod engines;
 mod extent;
 mod intersections;
 mod invariance;
+mod layers;
 mod materials;
 mod outline;
 mod strokes;

@@ -1,7 +1,8 @@
 //! What the pen travels between strokes.
 
 use glam::{DVec3, dvec3};
-use hiddenline::engines::surface::{CellOrder, Lines, max_min, strokes};
+use hiddenline::chain::grid_lines::{Lines, strokes};
+use hiddenline::engines::surface::{CellOrder, max_min};
 use hiddenline::surface::Grid;
 use hiddenline::surface::formula::{Formula, Variables};
 

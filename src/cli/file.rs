@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::place::missing_folder;
+use super::paths::missing_folder;
 
 const BUFFER_BYTES: usize = 1 << 18;
 
 /// Writes to standard output.
-pub(in crate::cli) fn write_to_stdout<E: From<io::Error>>(
+pub(super) fn write_to_stdout<E: From<io::Error>>(
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut out = BufWriter::with_capacity(BUFFER_BYTES, io::stdout().lock());
@@ -22,7 +22,7 @@ pub(in crate::cli) fn write_to_stdout<E: From<io::Error>>(
 /// Writes beside `path` and renames, so that `path` is as before until all is written.
 ///
 /// Links are followed. What is no file, such as a device, is written to directly.
-pub(in crate::cli) fn write_to_file<E: From<io::Error>>(
+pub(super) fn write_to_file<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {

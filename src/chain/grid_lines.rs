@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::pen_path::{LineStroke, order};
-use super::pieces::{GridPieces, LOWER, PARTLY, SurfaceSide, UPPER, VisiblePiece};
 use crate::camera::{Camera, Frame, Projection};
+use crate::engines::surface::pieces::{LOWER, PARTLY, UPPER};
+use crate::engines::surface::{GridPieces, SurfaceSide, VisiblePiece};
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
 use crate::strokes::{Drawing, StrokeKind};
