@@ -1,8 +1,8 @@
-//! From spans to strokes: which pieces are drawn, and how they chain into long polylines.
+//! From spans to strokes: which pieces are drawn, and how they join into long polylines.
 //!
 //! Pieces of edges meet where they share a vertex of the mesh, never because they are near each
-//! other. At a vertex where several meet, the pair that goes on straightest is joined first, since
-//! corners slow a pen down:
+//! other. Where several meet at a vertex, the straightest pair is joined first, since corners slow a
+//! pen down:
 //!
 //! ```text
 //!        ╲   ╱               the two straight lines go through,
@@ -27,21 +27,21 @@ use rayon::prelude::*;
 pub struct ChainOptions {
     /// Keep hidden spans too.
     pub hidden: bool,
-    /// Of the hidden spans keep only those covered at most so often, and join only those covered
-    /// equally often; `None` keeps and joins all of them.
+    /// Keep only hidden spans with at most this quantitative invisibility, and join only equal ones;
+    /// `None` keeps and joins all of them.
     pub hidden_levels: Option<u32>,
     /// One two-point stroke for each maximal visible span and each hidden one of constant `qi`;
-    /// nothing is joined, dropped or left out because it is drawn already.
+    /// nothing is joined or dropped, and lines that coincide are all kept.
     pub exact: bool,
-    /// Join only pieces of one kind and one `qi`, so that each stroke's attributes hold for all of
-    /// it. Otherwise all visible pieces join, and all hidden ones, as one pen draws them.
+    /// Join only pieces of one kind and one `qi`, so that a stroke's attributes apply to all of it.
+    /// Otherwise all visible pieces join, and all hidden ones, as one pen draws them.
     pub apart_by_kind: bool,
     /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between
     /// two visible pieces of one edge are closed. In image units; zero for none.
     pub shortest: f64,
 }
 
-/// A part of an edge that is drawn.
+/// A part of a line that is drawn.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     kind: StrokeKind,
@@ -56,13 +56,13 @@ struct Piece {
 /// their edge: what lies between them is rounding.
 const SAME_CUT: f64 = 1.0 / (1u64 << 35) as f64;
 
-/// The end of a piece at which no other can join.
+/// Marks the end of a piece that no other can join.
 const FREE: u32 = u32::MAX;
 
 /// Turns the spans of all drawn edges into strokes, in the order of the edges.
 ///
-/// With `outline`, visible strokes tell whether they are part of it. O(pieces log pieces), except at
-/// vertices where very many edges meet, which are joined in order.
+/// With `outline`, visible strokes are marked that belong to it. O(pieces log pieces); where very many
+/// edges meet at one vertex, they are joined in order.
 pub fn chain(
     view: &ViewedScene,
     visibility: &Visibility,

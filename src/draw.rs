@@ -1,4 +1,4 @@
-//! From a scene and a camera to strokes: the stages between, in order.
+//! From a scene and a camera to strokes, stage by stage.
 
 pub mod meshed;
 
@@ -10,30 +10,30 @@ use crate::model::scene::Scene;
 use crate::strokes::Drawing;
 use crate::timing::{Seconds, timed};
 
-/// The default contact tolerance as a part of the largest coordinate: twice the spacing of single
-/// precision numbers, which most model files are written in.
+/// The default contact tolerance as a fraction of the largest coordinate: twice the spacing of
+/// single-precision numbers, which most model files hold.
 ///
 /// Less loses bottom edges of boxes on turned tables (half of it is the least that lost none of
 /// twelve); more lets lines shine through thin parts of models that lie far from the origin.
 pub const DEFAULT_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
 
-/// The least default contact tolerance as a part of the model's longest side: what six decimals,
-/// as text files have them, make of a model that is one unit large.
+/// The least default contact tolerance as a fraction of the model's longest side: the rounding of a
+/// model one unit in size that was written with six decimals.
 pub const LEAST_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 
-/// The shortest stroke, in millimeters on paper, unless set otherwise: a little less than the width
-/// of a pen, which draws a dot of that size anyway.
+/// The default shortest stroke in millimeters on paper: a little less than the width of a pen, which
+/// makes a dot of that size anyway.
 pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.25;
 
-/// What becomes of hidden lines.
+/// What happens to hidden lines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HiddenLines {
-    /// They are left out.
+    /// Not drawn.
     #[default]
     None,
-    /// They are drawn dashed, on their own layer.
+    /// Dashed, on a layer of their own.
     Dashed,
-    /// They are drawn solid, on their own layer.
+    /// Solid, on a layer of their own.
     Solid,
 }
 
@@ -44,15 +44,15 @@ pub struct DrawOptions {
     pub lines: LineSelection,
     /// Faces that meet at more than this angle, in degrees, make a crease.
     pub crease_deg: f64,
-    /// Hidden lines: left out, or kept with their quantitative invisibility.
+    /// Whether hidden lines are left out, or kept with their quantitative invisibility.
     pub hidden: HiddenLines,
-    /// Of the hidden lines only those covered at most so often are kept, and each stroke is covered
-    /// equally often all along; `None` keeps all.
+    /// Keep only hidden lines with at most this quantitative invisibility, which is then constant along
+    /// each stroke; `None` keeps all.
     pub hidden_levels: Option<u32>,
-    /// One two-point stroke for each maximal visible interval of each edge; nothing is joined,
-    /// dropped or de-duplicated, and contact tolerance and shortest stroke are zero.
+    /// One two-point stroke for each maximal visible interval of each line: nothing is joined, dropped
+    /// or deduplicated, and contact tolerance and shortest stroke are zero.
     pub exact: bool,
-    /// How hidden lines are found.
+    /// The line engine.
     pub engine: Engine,
     /// A triangle does not cover a segment both of whose ends lie within this distance of its
     /// plane, in model units; `None` for the default, which depends on the size of the coordinates.
@@ -60,8 +60,8 @@ pub struct DrawOptions {
     /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between two
     /// visible pieces of one edge are closed. In millimeters on paper.
     pub shortest_stroke_mm: f64,
-    /// Join only pieces of one kind and one `qi`, so that each stroke's attributes hold for all of
-    /// it; otherwise all that one pen draws is joined.
+    /// Join only pieces of one kind and one `qi`, so that a stroke's attributes apply to all of it.
+    /// Otherwise everything that one pen draws is joined.
     pub apart_by_kind: bool,
 }
 

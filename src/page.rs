@@ -32,10 +32,10 @@ pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
 pub use self::pens::{Drawn, PenRule};
 
-/// Empty border of the page in millimetres, unless set otherwise.
+/// Empty border of the page in millimeters, unless set otherwise.
 pub const DEFAULT_MARGIN_MM: f64 = 10.0;
 
-/// Width of the pen's line in millimetres, unless set otherwise.
+/// Width of the pen's line in millimeters, unless set otherwise.
 pub const DEFAULT_PEN_WIDTH_MM: f64 = 0.3;
 
 /// Cropping leaves alone what is outside the margins by less than half of the last digit that
@@ -54,12 +54,12 @@ pub enum Orientation {
 /// How large the drawing is on the page.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Placement {
-    /// As large as the margins allow, centred.
+    /// As large as the margins allow, centered.
     #[default]
     Fit,
-    /// At a scale, centred. In perspective it holds at the distance of the target.
+    /// At a scale, centered. In perspective it holds at the distance of the target.
     Scale {
-        /// Millimetres on paper for one model unit.
+        /// Millimeters on paper for one model unit.
         mm_per_unit: f64,
     },
     /// The height between the margins is exactly the vertical field of view.
@@ -94,10 +94,7 @@ impl Default for PageOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PageError {
     /// Nothing of the sheet is left between the margins.
-    #[error(
-        "margins of {margin_mm} mm leave nothing of a page of {width_mm} x {height_mm} mm; \
-         give a smaller --margin or a larger --page"
-    )]
+    #[error("margins of {margin_mm} mm leave no room on a page of {width_mm} x {height_mm} mm")]
     Margins {
         /// The margin.
         margin_mm: f64,
@@ -113,7 +110,7 @@ pub enum PageError {
     #[error("the drawing's scale must be above 0")]
     Scale,
     /// An orthographic camera has no field of view.
-    #[error("an orthographic view has no field of view to fit; give --projection perspective")]
+    #[error("an orthographic view has no field of view to fit")]
     NoFieldOfView,
 }
 
@@ -124,14 +121,14 @@ pub struct Page {
     pub paper: Paper,
     /// Empty border on all four sides.
     pub margin_mm: f64,
-    /// Image coordinates (y upwards) to page millimetres (y downwards).
+    /// Image coordinates (y upwards) to page millimeters (y downwards).
     pub page_from_image: DAffine2,
 }
 
 /// What the pens draw and how it is labeled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotOptions {
-    /// Width of the lines of pens without a rule, in millimetres.
+    /// Width of the lines of pens without a rule, in millimeters.
     pub pen_width_mm: f64,
     /// Which pens draw what.
     pub pens: Vec<PenRule>,
@@ -213,7 +210,7 @@ impl Page {
         Ok(Self { paper, margin_mm, page_from_image })
     }
 
-    /// Millimetres on paper for one unit of the image.
+    /// Millimeters on paper for one unit of the image.
     pub fn mm_per_image_unit(&self) -> f64 {
         self.page_from_image.matrix2.x_axis.x
     }

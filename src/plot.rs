@@ -1,7 +1,7 @@
-//! A finished page: polylines and filled areas in millimetres, one layer a pen. What writers write.
+//! A finished page: polylines and filled areas in millimeters, one layer per pen. Writers write it.
 //!
 //! Page coordinates have their origin at the top left corner of the paper, x to the right and y
-//! *downwards*, in millimetres.
+//! *downwards*, in millimeters.
 
 use std::borrow::Cow;
 
@@ -10,9 +10,9 @@ use glam::DVec2;
 /// A sheet of paper with everything that is drawn on it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plot {
-    /// Width of the sheet in millimetres.
+    /// Width of the sheet in millimeters.
     pub width_mm: f64,
-    /// Height of the sheet in millimetres.
+    /// Height of the sheet in millimeters.
     pub height_mm: f64,
     /// What the drawing shows, for the file's title.
     pub title: String,
@@ -44,9 +44,9 @@ pub struct Layer {
     pub label: Option<String>,
     /// The pen.
     pub pen: Pen,
-    /// Polylines in page millimetres; a closed one ends at its first point.
+    /// Polylines in page millimeters; a closed one ends at its first point.
     pub lines: Polylines,
-    /// Areas in page millimetres, painted in their order and before the lines. Plotters have none.
+    /// Areas in page millimeters, painted in their order and before the lines. Plotters have none.
     pub fills: Fills,
 }
 
@@ -73,9 +73,9 @@ impl Layer {
 /// What draws a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pen {
-    /// Width of its line in millimetres.
+    /// Width of its line in millimeters.
     pub width_mm: f64,
-    /// Colour as `#rrggbb`.
+    /// Color as `#rrggbb`.
     pub color: String,
 }
 
@@ -94,7 +94,7 @@ pub struct Polylines {
 }
 
 impl Polylines {
-    /// Appends a polyline. Fewer than two points are none and are left out.
+    /// Appends a polyline. One of fewer than two points is left out.
     pub fn push(&mut self, points: impl IntoIterator<Item = DVec2>) {
         let start = self.points.len();
         self.points.extend(points);
@@ -120,7 +120,7 @@ impl Polylines {
         self.points.len()
     }
 
-    /// Sum of the lengths of all polylines in millimetres.
+    /// Sum of the lengths of all polylines in millimeters.
     pub fn length_mm(&self) -> f64 {
         // The sum of nothing is -0.
         self.iter().flat_map(|line| line.windows(2)).map(|s| s[0].distance(s[1])).sum::<f64>() + 0.0

@@ -64,11 +64,10 @@ pub struct Stroke<'a> {
     pub kind: StrokeKind,
     /// Quantitative invisibility: how many triangles hide it; 0 is visible.
     pub qi: u32,
-    /// Whether it is part of the outline: nothing but the background is seen beside it. Only told
-    /// where the outline was asked for.
+    /// Whether it is part of the outline: only the background is seen beside it. Known only where the
+    /// outline was requested.
     pub outline: bool,
-    /// Whether it is a line of a surface seen from below. Only told where the undersides were asked
-    /// for.
+    /// Whether it is a line of a surface seen from below. Known only where undersides were requested.
     pub underside: bool,
     /// Two points or more in image coordinates; a closed stroke ends at its first point.
     pub points: &'a [DVec2],
@@ -92,12 +91,12 @@ struct Head {
 }
 
 impl Drawing {
-    /// Appends a stroke. Fewer than two points are no stroke and are left out.
+    /// Appends a stroke. One of fewer than two points is left out.
     pub fn push(&mut self, kind: StrokeKind, qi: u32, points: impl IntoIterator<Item = DVec2>) {
         self.push_with(kind, qi, false, points);
     }
 
-    /// Appends a visible stroke of the outline. Fewer than two points are left out.
+    /// Appends a visible stroke of the outline. One of fewer than two points is left out.
     pub fn push_outline(&mut self, kind: StrokeKind, points: impl IntoIterator<Item = DVec2>) {
         self.push_with(kind, 0, true, points);
     }

@@ -9,7 +9,7 @@
 //!         eye  ●──────► right (image x)       image: x to the right, y upwards
 //! ```
 //!
-//! With `d = P − eye` and the three directions normalised as `r`, `u`, `f`, the image of `P` is
+//! With `d = P − eye` and the three directions normalized as `r`, `u`, `f`, the image of `P` is
 //! `((d·r)/(d·f), (d·u)/(d·f))` in perspective and `(d·r, d·u)` in orthographic projection. The
 //! image is for drawing only: what hides what is decided on the points of the scene.
 
@@ -61,7 +61,7 @@ pub enum CameraError {
     #[error("eye and target are the same point; move one of them")]
     NoDirection,
     /// `up` has no part across the direction of view.
-    #[error("up is parallel to the direction of view; give another --up")]
+    #[error("the up direction is parallel to the direction of view")]
     UpParallel,
     /// The field of view is not between 0 and 180 degrees.
     #[error("the field of view must be above 0 and below 180 degrees")]
@@ -133,7 +133,7 @@ impl Camera {
         self.target - self.eye
     }
 
-    /// The three image directions, normalised.
+    /// The three image directions, normalized.
     pub fn frame(&self) -> Frame {
         // Lengths are scaled to about one first, so that no product over- or underflows.
         let forward = scaled_to_one(self.forward());
@@ -159,7 +159,7 @@ impl Camera {
     }
 }
 
-/// The camera's directions, normalised and at right angles to each other.
+/// The camera's directions, normalized and at right angles to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// To the right on the page.

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::camera::framing::{
-    DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, NamedView, ProjectionKind, Standpoint,
+    DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, FramingError, NamedView, ProjectionKind,
+    Standpoint,
 };
-use hiddenline::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR};
+use hiddenline::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR};
 use hiddenline::write::json;
 
 use super::paths::is_dash;
@@ -138,7 +139,12 @@ impl ViewSource {
     pub(super) fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, Box<dyn Error>> {
         match self {
             Self::File(path) => read_camera(path),
-            Self::Framing(framing) => Ok(framing.camera(bounds)?),
+            Self::Framing(framing) => framing.camera(bounds).map_err(|error| match error {
+                FramingError::Camera(CameraError::UpParallel) => {
+                    format!("{error}; give another --up").into()
+                }
+                _ => error.into(),
+            }),
         }
     }
 }

@@ -112,7 +112,7 @@ const NAMES: [&str; 29] = [
     "color",
 ];
 
-/// A length: millimetres, or text with a unit.
+/// A length: millimeters, or text with a unit.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 enum Scalar {

@@ -28,7 +28,7 @@ Examples:
   hiddenline draw house.obj --up-axis y --eye=-30,-40,12 --fov 50 -o house.png
       A picture of what is seen from a point. Numbers may be negative.
   hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
-      True to scale, for a model in millimetres.
+      True to scale, for a model in millimeters.
   hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
       Two models, the second one lifted.
   cat part.stl | hiddenline draw - --input-format stl > part.svg

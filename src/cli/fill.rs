@@ -15,7 +15,7 @@ use hiddenline::engines::face::Prepared;
 use hiddenline::extent::Extent;
 use hiddenline::model::scene::Scene;
 use hiddenline::optimize::Options;
-use hiddenline::page::{Page, PageOptions, PlotOptions};
+use hiddenline::page::{PageOptions, PlotOptions};
 use hiddenline::read::material_colors;
 use hiddenline::shading::fill::{FillOptions, Filled, fill_prepared};
 use hiddenline::strokes::Drawing;
@@ -27,7 +27,7 @@ use super::camera::{CameraArgs, ViewSource};
 use super::input::{Input, InputArgs};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
-use super::paper::Run;
+use super::paper::{Run, placed};
 use super::progress::Progress;
 use super::scene::Subject;
 use super::surface::DEFAULT_SAMPLES;
@@ -216,7 +216,7 @@ impl Picture<'_> {
         run.progress.stage("filling");
         let mut options = self.fill.clone();
         let extent = self.frame.unwrap_or_else(|| scene.extent(camera));
-        let page = Page::place(&extent, camera, &job.page)?;
+        let page = placed(&extent, camera, &job.page)?;
         options.settings.leaf = Some(job.leaf_mm / page.mm_per_image_unit());
         let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
             fill_prepared(self.prepared, camera, &options)

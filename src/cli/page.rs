@@ -55,7 +55,7 @@ impl PageArgs {
         self.pen_width
     }
 
-    /// Millimetres of a model unit, for --drawing-scale.
+    /// Millimeters of a model unit, for --drawing-scale.
     pub(super) fn unit_mm(&self) -> f64 {
         match self.unit {
             LengthUnit::Mm => 1.0,

@@ -46,7 +46,7 @@ pub(super) struct Run<'a> {
     pub(super) progress: Progress,
     pub(super) stats: Stats,
     pub(super) notes: Notes,
-    /// Millimetres of a model unit, for scales in messages.
+    /// Millimeters of a model unit, for scales in messages.
     pub(super) unit_mm: f64,
 }
 
@@ -64,8 +64,8 @@ impl Sheet {
         extent: Extent,
         camera: Camera,
         options: &PageOptions,
-    ) -> Result<Self, PageError> {
-        let page = Page::place(&extent, &camera, options)?;
+    ) -> Result<Self, String> {
+        let page = placed(&extent, &camera, options)?;
         Ok(Self { camera, page, extent, options: *options })
     }
 
@@ -89,6 +89,21 @@ impl Sheet {
         let (large, small) = (rounded(scale, false), rounded(1.0 / scale, true));
         Some(if scale >= 1.0 { format!("{large}:1") } else { format!("1:{small}") })
     }
+}
+
+/// Places a page; errors come with the options that mend them.
+pub(super) fn placed(
+    extent: &Extent,
+    camera: &Camera,
+    options: &PageOptions,
+) -> Result<Page, String> {
+    Page::place(extent, camera, options).map_err(|error| match error {
+        PageError::Margins { .. } => {
+            format!("{error}; give a smaller --margin or a larger --page")
+        }
+        PageError::NoFieldOfView => format!("{error}; give --projection perspective"),
+        PageError::NegativeMargin(_) | PageError::Scale => error.to_string(),
+    })
 }
 
 /// Refuses to send a picture to a terminal.

@@ -52,19 +52,19 @@ pub(super) fn direction(text: &str) -> Result<DVec3, String> {
         .and_then(|v| if v == DVec3::ZERO { Err("0,0,0 is no direction".into()) } else { Ok(v) })
 }
 
-/// A length in millimetres, 0 or more.
+/// A length in millimeters, 0 or more.
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let length = parse_length_mm(text).map_err(|error| error.to_string())?;
     if length >= 0.0 { Ok(length) } else { Err("must be 0 or more".into()) }
 }
 
-/// A length in millimetres, above 0.
+/// A length in millimeters, above 0.
 pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     let length = parse_length_mm(text).map_err(|error| error.to_string())?;
     if length > 0.0 { Ok(length) } else { Err("must be above 0".into()) }
 }
 
-/// A length in millimetres, above 0, or in meters as in `10m`.
+/// A length in millimeters, above 0, or in meters as in `10m`.
 pub(super) fn distance(text: &str) -> Result<f64, String> {
     let meters =
         text.trim().strip_suffix('m').filter(|t| t.ends_with(|c: char| c != 'm' && c != 'c'));

@@ -11,9 +11,9 @@ const CORNER_DEG: f64 = 30.0;
 /// stretched alike to make that so. A stretch too short for a gap is solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dash {
-    /// Length of a dash in millimetres.
+    /// Length of a dash in millimeters.
     pub dash_mm: f64,
-    /// Length of a gap in millimetres. Below 0.7 plotting software may join the dashes again.
+    /// Length of a gap in millimeters. Below 0.7 plotting software may join the dashes again.
     pub gap_mm: f64,
 }
 
@@ -25,7 +25,7 @@ impl Default for Dash {
 }
 
 impl Dash {
-    /// Hands the dashes along a polyline in millimetres to `emit`.
+    /// Hands the dashes along a polyline in millimeters to `emit`.
     pub(super) fn for_each_dash(&self, points: &[DVec2], mut emit: impl FnMut(&[DVec2])) {
         let cos_corner = libm::cos(CORNER_DEG.to_radians());
         let is_corner = |before: DVec2, at: DVec2, after: DVec2| {

@@ -38,7 +38,7 @@ pub enum PaperError {
     #[error("`{0}` is no paper: give a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm")]
     Unknown(String),
     /// Not a number with a unit.
-    #[error("`{0}` is no length: give a number, and mm, cm or in if it is not in millimetres")]
+    #[error("`{0}` is no length: give a number, and mm, cm or in if it is not in millimeters")]
     Length(String),
     /// Zero, negative, or beyond any paper.
     #[error("`{0}`: width and height must be above 0 and at most 100 m")]
@@ -104,7 +104,7 @@ impl FromStr for Paper {
     }
 }
 
-/// Reads a length as `10`, `10mm`, `1cm` or `0.5in`, in millimetres.
+/// Reads a length as `10`, `10mm`, `1cm` or `0.5in`, in millimeters.
 ///
 /// # Errors
 /// The text is no finite number with one of these units.
@@ -119,7 +119,7 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse::<f64>().ok().filter(|value| value.is_finite())
 }
 
-/// Number and unit in millimetres, if the text ends in one.
+/// Number and unit in millimeters, if the text ends in one.
 fn split_unit(text: &str) -> (&str, Option<f64>) {
     [("mm", 1.0), ("cm", 10.0), ("in", 25.4)]
         .iter()

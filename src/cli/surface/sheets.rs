@@ -10,8 +10,8 @@ use hiddenline::extent::Extent;
 use hiddenline::model::mesh::Mesh;
 use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{
-    Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams, delaunay,
-    evenly, lattice_extent, read_heights, read_points,
+    Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
+    delaunay, evenly, lattice_extent, read_heights, read_points,
 };
 
 use hiddenline::camera::Camera;
