@@ -16,6 +16,7 @@ mod areas;
 mod dash;
 mod paper;
 mod pens;
+mod refit;
 
 use glam::{DAffine2, DMat2, DVec2};
 use thiserror::Error;
@@ -30,7 +31,8 @@ use crate::strokes::Drawing;
 
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
-pub use self::pens::{Drawn, PenRule};
+pub use self::pens::{Drawn, LayerControls, PenRule};
+pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 
 /// Empty border of the page in millimeters, unless set otherwise.
 pub const DEFAULT_MARGIN_MM: f64 = 10.0;

@@ -80,7 +80,7 @@ impl DrawArgs {
         Ok(Job {
             files,
             view,
-            page: page.options(),
+            page: output.target.within_reach(page.options()),
             unit_mm: page.unit_mm(),
             pen_width_mm: page.pen_width_mm(),
             dash: lines.dash,

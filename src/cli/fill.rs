@@ -150,7 +150,7 @@ impl FillArgs {
             seam_mm: areas.seam,
             turntable: areas.turntable,
             edges: (!edges.no_edges).then_some(lines),
-            page: page.options(),
+            page: output.target.within_reach(page.options()),
             pen_width_mm,
             output,
         })

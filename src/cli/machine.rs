@@ -1,12 +1,14 @@
-//! Which machine draws: what it understands, and how it moves.
+//! The machine to write for: what it understands, and how it moves.
 
 use std::path::{Path, PathBuf};
 
 use hiddenline::optimize::estimate::Motion;
+use hiddenline::page::{Cropped, PageOptions};
 use hiddenline::write::{Format, gcode, hpgl};
 use thiserror::Error;
 
 use super::config;
+use super::messages::counted;
 use super::suggestion::suggestion;
 
 /// The plotter that HPGL is for, unless set otherwise.
@@ -124,6 +126,28 @@ impl Target {
             }
             _ => Ok(Self { device: Device::Any, ..found }),
         }
+    }
+}
+
+impl Target {
+    /// The page with a margin wide enough that the pen reaches all of what lies within it.
+    pub(super) fn within_reach(&self, options: PageOptions) -> PageOptions {
+        let Device::Plotter(machine) = &self.device else { return options };
+        let paper = options.paper;
+        let border_mm = machine.unreachable_border_mm(paper.width_mm, paper.height_mm);
+        let margin_mm = options.margin_mm.max(border_mm.unwrap_or(0.0));
+        PageOptions { margin_mm, ..options }
+    }
+}
+
+/// What was cut off, as the beginning of a message; `None` if nothing was.
+pub(super) fn lost_ink(cropped: &Cropped) -> Option<String> {
+    let dots = counted(cropped.lost_dots, "dot", "dots");
+    match (cropped.lost_mm > 0.0, cropped.lost_dots > 0) {
+        (false, false) => None,
+        (true, false) => Some(format!("{:.1} mm of ink are", cropped.lost_mm)),
+        (false, true) => Some(format!("{dots} are")),
+        (true, true) => Some(format!("{:.1} mm of ink and {dots} are", cropped.lost_mm)),
     }
 }
 

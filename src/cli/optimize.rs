@@ -4,13 +4,14 @@ use std::error::Error;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use hiddenline::optimize::Options;
-use hiddenline::page::Drawn;
-use hiddenline::read_svg;
+use clap::{Args, ValueEnum};
+use hiddenline::optimize::{Options, near_overlap};
+use hiddenline::page::{Crop, Drawn, Orientation, Paper, RefitOptions, refit};
+use hiddenline::read_svg::{self, SvgOptions};
 use hiddenline::timing::timed;
 use hiddenline::write::Format;
 
+use super::machine::{self, Device};
 use super::messages::counted;
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::paper::{Notes, Run};
@@ -43,14 +44,75 @@ pub(super) struct OptimizeArgs {
     /// Drop strokes shorter than this, and close those whose ends are this close
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     shortest_stroke: f64,
+    /// Opaque fills hide the ink below them; shapes with a fill and no stroke only hide
+    #[arg(long)]
+    occlude: bool,
+    #[command(flatten)]
+    sheet: SheetArgs,
     #[command(flatten)]
     output: OutputArgs,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Page")]
+struct SheetArgs {
+    /// Sheet to draw on: a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
+    /// [default: the page of the file]
+    #[arg(long, value_name = "SIZE")]
+    page: Option<Paper>,
+    /// Wide rather than high
+    #[arg(long, conflicts_with = "portrait")]
+    landscape: bool,
+    /// High rather than wide
+    #[arg(long)]
+    portrait: bool,
+    /// Empty border, for --fit and --crop margin
+    #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
+    margin: f64,
+    /// Scale the drawing to be as large as the margins allow, centered
+    #[arg(long)]
+    fit: bool,
+    /// Center the drawing on the sheet
+    #[arg(long)]
+    center: bool,
+    /// Where ink is cut off
+    #[arg(long, value_name = "WHERE", value_enum, default_value = "page")]
+    crop: CropAt,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CropAt {
+    Page,
+    Margin,
+    None,
+}
+
+impl SheetArgs {
+    fn options(&self) -> RefitOptions {
+        RefitOptions {
+            paper: self.page,
+            orientation: match (self.landscape, self.portrait) {
+                (true, _) => Some(Orientation::Landscape),
+                (_, true) => Some(Orientation::Portrait),
+                _ => None,
+            },
+            margin_mm: self.margin,
+            fit: self.fit,
+            center: self.center,
+            crop: match self.crop {
+                CropAt::Page => Crop::Page,
+                CropAt::Margin => Crop::Margin,
+                CropAt::None => Crop::None,
+            },
+        }
+    }
 }
 
 /// What is to be done.
 pub(super) struct Job {
     file: PathBuf,
-    tolerance_mm: f64,
+    svg: SvgOptions,
+    sheet: RefitOptions,
     shortest_mm: f64,
     output: OutputOptions,
 }
@@ -75,7 +137,12 @@ impl OptimizeArgs {
         }
         Ok(Job {
             file: self.file,
-            tolerance_mm: self.tolerance,
+            svg: SvgOptions {
+                tolerance_mm: self.tolerance,
+                occlude: self.occlude,
+                ..SvgOptions::default()
+            },
+            sheet: self.sheet.options(),
             shortest_mm: self.shortest_stroke,
             output,
         })
@@ -91,10 +158,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.progress.stage("reading");
     let name = title(&job.file);
     let read = timed(&mut run.stats.seconds.read, || -> Result<_, Box<dyn Error>> {
-        let text = read_text(&job.file).map_err(|error| format!("{name}: {error}"))?;
-        let options =
-            read_svg::Options { tolerance_mm: job.tolerance_mm, ..read_svg::Options::default() };
-        Ok(read_svg::read(&text, &options).map_err(|error| format!("{name}: {error}"))?)
+        let bytes = read_bytes(&job.file).map_err(|error| format!("{name}: {error}"))?;
+        Ok(read_svg::read_bytes(&bytes, &job.svg).map_err(|error| format!("{name}: {error}"))?)
     })?;
     let mut plot = read.plot;
     for rule in job.output.plotting.pens(hiddenline::page::DEFAULT_PEN_WIDTH_MM) {
@@ -105,12 +170,55 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let name = rule.drawn.name().into_owned();
         plot.layers = vec![hiddenline::plot::Layer {
             number: rule.number,
+            label: rule.controls.label(rule.number, &name),
             name,
             pen: rule.pen,
             lines,
             ..Default::default()
         }];
     }
+    let mut warnings: Vec<String> = read.warnings.into_iter().collect();
+    let sheet = match &job.output.target.device {
+        // To fit is to fit what the pen reaches.
+        Device::Plotter(machine) if job.sheet.fit => {
+            let paper = job
+                .sheet
+                .paper
+                .map_or([plot.width_mm, plot.height_mm], |paper| [paper.width_mm, paper.height_mm]);
+            let border_mm = machine.unreachable_border_mm(paper[0], paper[1]).unwrap_or(0.0);
+            RefitOptions { margin_mm: job.sheet.margin_mm.max(border_mm), ..job.sheet }
+        }
+        _ => job.sheet,
+    };
+    let cropped = refit(plot, &sheet)?;
+    warnings.extend(machine::lost_ink(&cropped).map(|lost| {
+        let border = if job.sheet.crop == Crop::Margin { "margins" } else { "page" };
+        format!(
+            "{lost} cut off outside of the {border}; --fit brings all of it onto the page, \
+             --crop none keeps it where it is"
+        )
+    }));
+    let mut plot = cropped.plot;
+    if let (Format::Hpgl, Device::Plotter(machine)) = (job.output.format, &job.output.target.device)
+        && !job.output.plotting.has_pens()
+    {
+        machine.assign_pens(&mut plot).map_err(|error| {
+            format!(
+                "{name}: {error}; give --pen visible=1 to draw everything with one pen, or hide \
+                 layers by labels that begin with %"
+            )
+        })?;
+    }
+    let hint = match job.output.plotting.overlap_mm() {
+        None => near_overlap(&plot).map(|found| {
+            format!(
+                "\nhint: {:.1} mm of ink lie within {} mm of other ink; --overlap-tolerance {1} \
+                 leaves them out",
+                found.saved_mm, found.tolerance_mm
+            )
+        }),
+        Some(_) => None,
+    };
     if plot.title.is_empty() {
         plot.title = name.clone();
     }
@@ -118,11 +226,12 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.stats.strokes = plot.layers.iter().map(|layer| layer.lines.len()).sum();
     run.stats.points = plot.layers.iter().map(|layer| layer.lines.n_points()).sum();
     run.notes.add(Notes {
-        warnings: read.warnings.into_iter().collect(),
+        warnings,
         summary: format!(
-            "{name}: {}, {}",
+            "{name}: {}, {}{}",
             counted(run.stats.strokes, "stroke", "strokes"),
-            counted(run.stats.points, "point", "points")
+            counted(run.stats.points, "point", "points"),
+            hint.unwrap_or_default()
         ),
     });
     let paper = format!("{} x {} mm", tenths(plot.width_mm), tenths(plot.height_mm));
@@ -134,12 +243,11 @@ fn tenths(mm: f64) -> f64 {
     (mm * 10.0).round() / 10.0
 }
 
-fn read_text(path: &Path) -> Result<String, Box<dyn Error>> {
-    let mut bytes = Vec::new();
-    if is_dash(path) {
-        io::stdin().lock().read_to_end(&mut bytes)?;
-    } else {
-        bytes = std::fs::read(path)?;
+fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    if !is_dash(path) {
+        return std::fs::read(path);
     }
-    Ok(String::from_utf8(bytes).map_err(|_| "not a readable SVG: the text is not UTF-8")?)
+    let mut bytes = Vec::new();
+    io::stdin().lock().read_to_end(&mut bytes)?;
+    Ok(bytes)
 }

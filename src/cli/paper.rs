@@ -9,7 +9,7 @@ use hiddenline::camera::Camera;
 use hiddenline::extent::Extent;
 use hiddenline::optimize::estimate::PenWork;
 use hiddenline::optimize::{Effort, Options};
-use hiddenline::page::{Page, PageError, PageOptions, Placement, PlotOptions};
+use hiddenline::page::{Page, PageError, PageOptions, Placement, PlotOptions, crop_to};
 use hiddenline::plot::Plot;
 use hiddenline::strokes::Drawing;
 use hiddenline::timing::timed;
@@ -22,7 +22,7 @@ use super::output::OutputOptions;
 use super::plotting::Finished;
 use super::progress::Progress;
 use super::stats::{PlotStats, Stats, peak_bytes};
-use super::{file, messages};
+use super::{file, machine, messages};
 
 /// What reading has to tell, for when all went well.
 #[derive(Default)]
@@ -181,8 +181,25 @@ impl<'a> Run<'a> {
         plot: Plot,
         usual: &Options,
     ) -> Result<(), Box<dyn Error>> {
-        self.progress.stage("ordering strokes");
         let output = self.output;
+        let plot = match (&output.target.device, output.format) {
+            (Device::Plotter(machine), Format::Hpgl) => {
+                let profile = hpgl::Profile::on(&plot, machine.clone(), None)?;
+                let reach = profile.reach(&plot);
+                let cropped = crop_to(plot, reach);
+                let lost = machine::lost_ink(&cropped);
+                self.notes.warnings.extend(lost.map(|lost| {
+                    format!(
+                        "{lost} cut off: {} does not reach that far; make the drawing smaller \
+                         or the margin wider",
+                        machine.title
+                    )
+                }));
+                cropped.plot
+            }
+            _ => plot,
+        };
+        self.progress.stage("ordering strokes");
         let mut order_seconds = 0.0;
         let Finished { plot, stats, n_changes } =
             timed(&mut order_seconds, || output.plotting.finish(plot, &output.target, usual));
@@ -283,8 +300,7 @@ struct Done {
 /// What each pen draws and how long it all takes.
 fn described(plot: &Plot, done: &Done) -> String {
     let mut text: String = plot
-        .layers
-        .iter()
+        .plotted_layers()
         .map(|layer| {
             if !layer.fills.is_empty() {
                 let areas = counted(layer.fills.len(), "area", "areas");
@@ -375,8 +391,9 @@ fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
 
 /// Pens that programs which go by color would take for one.
 fn alike_pens(plot: &Plot) -> Option<String> {
-    let layers = plot.layers.iter().enumerate();
-    let mut pairs = layers.flat_map(|(i, a)| plot.layers.iter().skip(i + 1).map(move |b| (a, b)));
+    let layers = plot.plotted_layers().enumerate();
+    let mut pairs =
+        layers.flat_map(|(i, a)| plot.plotted_layers().skip(i + 1).map(move |b| (a, b)));
     pairs.find(|(a, b)| a.pen.color == b.pen.color && a.pen.width_mm != b.pen.width_mm).map(
         |(a, b)| {
             format!(

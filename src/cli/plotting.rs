@@ -6,7 +6,7 @@ use clap::Args;
 use hiddenline::draw::DrawOptions;
 use hiddenline::optimize::estimate::{self, PenWork};
 use hiddenline::optimize::{Effort, Options, optimize, split_by_distance};
-use hiddenline::page::{Drawn, PenRule};
+use hiddenline::page::{Drawn, LayerControls, PenRule};
 use hiddenline::plot::{Pen, Plot};
 use hiddenline::write::Format;
 
@@ -51,6 +51,9 @@ pub(super) struct PlotArgs {
     /// Begin a new layer where a pen has drawn this far, between strokes; 10m is ten meters
     #[arg(long, value_name = "LENGTH", value_parser = values::distance)]
     split_distance: Option<f64>,
+    /// Also cut strokes where --split-distance is drawn, and draw this much of the end once more
+    #[arg(long, value_name = "MM", value_parser = values::length, requires = "split_distance")]
+    split_overlap: Option<f64>,
     /// What draws: it decides HPGL and G-code, and the estimate of the time
     ///
     /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan, dmp-161, dxy, sketchmate.
@@ -63,7 +66,9 @@ pub(super) struct PlotArgs {
     gcode_profile: Option<PathBuf>,
     /// The pen for visible or hidden lines, or for one kind of them: WHAT=NUMBER[:WIDTH[:COLOR]]
     ///
-    /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer. WHAT is
+    /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer. For AxiDraw,
+    /// speed=PERCENT, height=PERCENT, delay=MS and pause may follow, as in
+    /// visible=1:0.3mm:black:speed=30:pause; they are written into the layer's label in SVG. WHAT is
     /// visible, hidden, outline, hidden1, hidden2 … for lines covered so often, or a kind of line.
     #[arg(long = "pen", value_name = "PEN", value_parser = values::pen)]
     pens: Vec<PenText>,
@@ -79,6 +84,7 @@ pub(super) struct Plotting {
     join_tolerance_mm: Option<f64>,
     overlap_mm: Option<f64>,
     split_distance_mm: Option<f64>,
+    split_overlap_mm: Option<f64>,
     pens: Vec<PenText>,
 }
 
@@ -114,6 +120,7 @@ impl PlotArgs {
             join_tolerance_mm: self.join_tolerance,
             overlap_mm: self.overlap_tolerance,
             split_distance_mm: self.split_distance,
+            split_overlap_mm: self.split_overlap,
             pens: self.pens,
         })
     }
@@ -134,6 +141,16 @@ impl Plotting {
         self.pens.iter().any(|pen| by_kind(pen.drawn))
     }
 
+    /// How close ink must be to other ink to be left out, if that was set.
+    pub(super) fn overlap_mm(&self) -> Option<f64> {
+        self.overlap_mm
+    }
+
+    /// Whether pens are given.
+    pub(super) fn has_pens(&self) -> bool {
+        !self.pens.is_empty()
+    }
+
     /// Whether hidden lines have pens.
     pub(super) fn has_hidden_pens(&self) -> bool {
         self.pens.iter().any(|pen| pen.drawn.is_hidden())
@@ -148,7 +165,8 @@ impl Plotting {
                 // The first number is left for the visible lines.
                 let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
                 let number = (2..).find(is_free).unwrap_or(2);
-                rules.push(PenRule { drawn, number, pen: Pen { width_mm, color } });
+                let (pen, controls) = (Pen { width_mm, color }, LayerControls::default());
+                rules.push(PenRule { drawn, number, pen, controls });
             }
         };
         if drawing.lines.has_outline() && drawing.lines.has_more_than_outline() {
@@ -170,7 +188,8 @@ impl Plotting {
             let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
             let number = (2..).find(is_free).unwrap_or(2);
             let pen = Pen { width_mm, color: UNDERSIDE_COLOR.into() };
-            rules.push(PenRule { drawn: Drawn::Underside, number, pen });
+            let controls = LayerControls::default();
+            rules.push(PenRule { drawn: Drawn::Underside, number, pen, controls });
         }
         rules
     }
@@ -186,6 +205,7 @@ impl Plotting {
         let rule = |pen: &PenText| PenRule {
             drawn: pen.drawn,
             number: pen.number,
+            controls: pen.controls,
             pen: Pen {
                 width_mm: pen.width_mm.unwrap_or(width_mm),
                 color: pen.color.clone().unwrap_or_else(|| {
@@ -216,7 +236,7 @@ impl Plotting {
             (plot, after, n_changes)
         };
         if let Some(distance_mm) = self.split_distance_mm {
-            plot = split_by_distance(&plot, distance_mm);
+            plot = split_by_distance(&plot, distance_mm, self.split_overlap_mm);
         }
         Finished { plot, stats: PlotStats { before, after }, n_changes }
     }

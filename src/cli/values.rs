@@ -5,7 +5,7 @@ use std::time::Duration;
 use glam::DVec3;
 use hiddenline::classify::LineSelection;
 use hiddenline::optimize::Effort;
-use hiddenline::page::{Dash, Drawn, parse_length_mm};
+use hiddenline::page::{Dash, Drawn, LayerControls, parse_length_mm};
 use hiddenline::shading::preview::LARGEST_SIDE;
 use hiddenline::strokes::StrokeKind;
 
@@ -152,13 +152,18 @@ pub(super) struct PenText {
     pub(super) width_mm: Option<f64>,
     /// `#rrggbb`.
     pub(super) color: Option<String>,
+    /// What AxiDraw's software is told.
+    pub(super) controls: LayerControls,
 }
 
 /// A pen as `visible=1:0.3mm:black`; width and color may be left out.
 pub(super) fn pen(text: &str) -> Result<PenText, String> {
     let example = || "give a pen as in visible=1:0.3mm:black".to_owned();
     let (drawn, rest) = text.split_once('=').ok_or_else(example)?;
-    let mut parts = rest.split(':').map(str::trim);
+    let is_control = |part: &&str| *part == "pause" || part.contains('=');
+    let (controls, parts): (Vec<&str>, Vec<&str>) =
+        rest.split(':').map(str::trim).partition(is_control);
+    let mut parts = parts.into_iter();
     let number = parts.next().unwrap_or_default().parse().ok();
     let number = number.filter(|n| (1..=1000).contains(n));
     let pen = PenText {
@@ -166,8 +171,29 @@ pub(super) fn pen(text: &str) -> Result<PenText, String> {
         number: number.ok_or("pens have numbers from 1 to 1000, as in visible=1:0.3mm:black")?,
         width_mm: parts.next().filter(|w| !w.is_empty()).map(positive_length).transpose()?,
         color: parts.next().filter(|c| !c.is_empty()).map(color).transpose()?,
+        controls: layer_controls(&controls)?,
     };
     if parts.next().is_some() { Err(example()) } else { Ok(pen) }
+}
+
+/// What follows the color of a pen, as `speed=30` and `pause`.
+fn layer_controls(parts: &[&str]) -> Result<LayerControls, String> {
+    let mut controls = LayerControls::default();
+    for part in parts {
+        let (name, value) = part.split_once('=').unwrap_or((part, ""));
+        let number = |low: u32, high: u32| {
+            let value = value.trim().parse().ok().filter(|n| (low..=high).contains(n));
+            value.map(Some).ok_or_else(|| format!("`{part}`: give a number from {low} to {high}"))
+        };
+        match name.trim() {
+            "pause" => controls.pause = true,
+            "speed" => controls.speed = number(1, 110)?,
+            "height" => controls.height = number(0, 100)?,
+            "delay" => controls.delay_ms = number(0, 100_000)?,
+            _ => return Err(format!("`{part}`: give speed=, height=, delay= or pause")),
+        }
+    }
+    Ok(controls)
 }
 
 fn drawn_by_pen(name: &str) -> Result<Drawn, String> {

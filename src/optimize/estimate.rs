@@ -1,4 +1,4 @@
-//! How far the pen goes and how long a plot takes.
+//! Pen-down and pen-up travel, and the time a plot takes.
 //!
 //! The model of plotter drivers: along a stroke the pen speeds up and slows down evenly, no faster
 //! than its limit, and slows down at corners so that rounding each off by a small deviation would
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plot::{Plot, Polylines};
 
-/// How a machine moves; millimetres and seconds.
+/// How a machine moves; millimeters and seconds.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
@@ -94,14 +94,14 @@ impl Default for Motion {
     }
 }
 
-/// What a plot takes.
+/// Travel and time of a plot.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Estimate {
     /// Number of strokes; the pen is raised after each.
     pub strokes: usize,
-    /// Way with the pen down in millimetres.
+    /// Pen-down travel in millimeters.
     pub down_mm: f64,
-    /// Way with the pen up between strokes in millimetres; from and to home not counted.
+    /// Pen-up travel between strokes in millimeters, without the trips from and to home.
     pub up_mm: f64,
     /// Times the pen is raised.
     pub lifts: usize,

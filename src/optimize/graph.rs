@@ -9,7 +9,7 @@ use crate::plot::Polylines;
 /// Ink as vertices and straight edges, nothing twice.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Graph {
-    /// Page positions in millimetres, nearly by growing x, then y.
+    /// Page positions in millimeters, nearly by growing x, then y.
     pub positions: Vec<DVec2>,
     /// Pairs of different vertices, the lower one first, in growing order, each pair once.
     pub edges: Vec<[u32; 2]>,
@@ -20,7 +20,7 @@ pub struct Graph {
 /// How the points at which strokes meet are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Joints<'a> {
-    /// Points within this distance in millimetres are one; zero joins equal points only.
+    /// Points within this distance in millimeters are one; zero joins equal points only.
     ///
     /// Points are visited by growing x, then y. Each joins the nearest group whose first point is
     /// within the distance and whose box then has no longer diagonal than that, or begins a group.
@@ -79,7 +79,7 @@ impl Graph {
         self.dots.retain(|&v| !inked[v as usize]);
     }
 
-    /// Total length of the edges in millimetres.
+    /// Total length of the edges in millimeters.
     pub fn length_mm(&self) -> f64 {
         self.edges.iter().map(|&[a, b]| self.position(a).distance(self.position(b))).sum()
     }

@@ -1,13 +1,13 @@
-//! From strokes to paper: nothing drawn twice, the fewest strokes, a short way between them.
+//! Stroke optimization: nothing drawn twice, the fewest strokes, little pen-up travel.
 //!
 //! ```text
 //!  lines ─► graph ─────► overlap ────► trails ───► simplify ─► order ─► lines
-//!           where they   shared ink    fewest,     fewer       short way
-//!           meet         once          straightest points      with the pen up
+//!           where they   shared ink    fewest,     fewer       short
+//!           meet         once          straightest points      travel
 //! ```
 //!
-//! Each layer is one pen's and is done apart from the others. What time the result takes on a
-//! machine is told by [`estimate`].
+//! Each layer belongs to one pen and is processed on its own. [`estimate`] computes how long the result
+//! takes on a machine.
 
 use std::time::Duration;
 
@@ -38,6 +38,9 @@ pub use order::{Ordered, order};
 
 pub mod estimate;
 
+mod near_overlap;
+pub use near_overlap::{NearOverlap, near_overlap};
+
 mod split;
 pub use split::split_by_distance;
 
@@ -51,7 +54,7 @@ pub const JOIN_TOLERANCE_MM: f64 = 0.002_000_000_001;
 /// that is written.
 pub const OVERLAP_MM: f64 = 0.0005;
 
-/// How long to search for a short way between the strokes.
+/// How long to search for a stroke order with little pen-up travel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
     /// Strokes stay in the order in which they were joined.
@@ -83,7 +86,7 @@ impl Effort {
     }
 }
 
-/// What to do with a drawing's strokes; lengths in page millimetres.
+/// What to do with a drawing's strokes; lengths in page millimeters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Points at most this far apart are one joint; zero joins equal points only, `None` joins
@@ -97,7 +100,7 @@ pub struct Options {
     /// Strokes shorter than this are dropped, and those whose ends are nearer to each other than
     /// this are closed. Zero does neither.
     pub shortest_mm: f64,
-    /// How long to search for a short way.
+    /// How long to search for a better stroke order.
     pub effort: Effort,
 }
 

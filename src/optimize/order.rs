@@ -1,4 +1,4 @@
-//! The order in which strokes are drawn, which end each begins at, and where closed ones begin.
+//! Stroke order: which stroke comes next, at which end it begins, and where closed strokes begin.
 //!
 //! Closed strokes first get the seam nearest to the stroke before, when always the nearest one comes
 //! next; the route itself is made by `greedy` and shortened by `tour`, and then better seams are

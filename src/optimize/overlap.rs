@@ -19,9 +19,9 @@ use super::graph::{Graph, Stars, edge_key, target, unique_edges};
 /// With `tolerance_mm` of zero only exactly collinear edges overlap (robust's `orient2d`);
 /// otherwise those that deviate no farther than that. Ink moves by `tolerance_mm` at most.
 ///
-/// Vertices are found in a grid whose cells hold about one, or are so wide that edges cross four
-/// each on average; expected O(vertices + edges) for drawings of strokes much shorter than the
-/// page, and O(vertices · edges) at worst, when all are as long as the page.
+/// Vertices are found in a grid whose cells hold about one. An edge of length `l` visits about `l`
+/// over the width of a cell: O(vertices + edges) for strokes much shorter than the page, and
+/// O(edges · √vertices) when all are as long as the page.
 pub fn remove_overlaps(graph: &mut Graph, tolerance_mm: f64) {
     let tolerance = tolerance_mm.max(0.0);
     let Some(grid) = Grid::new(graph, tolerance) else {
@@ -118,11 +118,7 @@ impl Grid {
             graph.positions.iter().fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
         let n = graph.positions.len() as f64;
         let size = high - low;
-        let cell = (size.x * size.y / n)
-            .sqrt()
-            .max(size.max_element() / n)
-            .max(graph.length_mm() / (4.0 * n))
-            .max(tolerance);
+        let cell = (size.x * size.y / n).sqrt().max(size.max_element() / n).max(tolerance);
         if !(cell > 0.0 && cell.is_finite()) {
             return None;
         }

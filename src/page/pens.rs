@@ -54,6 +54,39 @@ pub struct PenRule {
     pub number: u32,
     /// The pen.
     pub pen: Pen,
+    /// What AxiDraw's software is told about it.
+    pub controls: LayerControls,
+}
+
+/// What the label of a layer tells AxiDraw's software about it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LayerControls {
+    /// Whether it pauses before the layer, to change the pen.
+    pub pause: bool,
+    /// Speed with the pen down, in percent from 1 to 110.
+    pub speed: Option<u32>,
+    /// Height of the pen when it is down, in percent from 0 to 100.
+    pub height: Option<u32>,
+    /// Delay after the pen is lowered, in milliseconds.
+    pub delay_ms: Option<u32>,
+}
+
+impl LayerControls {
+    /// The label of a layer with these controls; `None` without any.
+    pub fn label(&self, number: u32, name: &str) -> Option<String> {
+        if *self == Self::default() {
+            return None;
+        }
+        let mut label = if self.pause { "!".to_owned() } else { String::new() };
+        label.push_str(&number.to_string());
+        let values = [("S", self.speed), ("H", self.height), ("D", self.delay_ms)];
+        for (letter, value) in values {
+            if let Some(value) = value {
+                label.push_str(&format!(" +{letter}{value}"));
+            }
+        }
+        Some(format!("{label} {name}"))
+    }
 }
 
 /// All pens while they draw.
@@ -80,7 +113,12 @@ impl Holder {
         for rule in options.pens.iter().filter(|r| with_hidden || !r.drawn.is_hidden()) {
             let layer = match holder.layers.iter().position(|l| l.number == rule.number) {
                 Some(layer) => layer,
-                None => holder.add(rule.drawn, rule.number, rule.pen.clone(), true),
+                None => {
+                    let layer = holder.add(rule.drawn, rule.number, rule.pen.clone(), true);
+                    let name = rule.drawn.name();
+                    holder.layers[layer].label = rule.controls.label(rule.number, &name);
+                    layer
+                }
             };
             holder.rules.push((rule.drawn, layer));
         }

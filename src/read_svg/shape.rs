@@ -5,7 +5,9 @@ use kurbo::{Affine, Arc, Ellipse, PathEl, Point, Shape, SvgArc, Vec2};
 use roxmltree::Node;
 use svgtypes::{PathParser, PathSegment, PointsParser};
 
-use super::{Error, MAX_COORDINATE_MM, Reader};
+use super::reader::Reader;
+use super::style::parse_length;
+use super::{MAX_COORDINATE_MM, SvgError};
 use crate::plot::Polylines;
 
 /// Share of the tolerance spent on turning arcs into cubic curves.
@@ -196,38 +198,67 @@ impl Outline {
 }
 
 impl Reader<'_, '_> {
-    /// Draws the outline of a shape.
+    /// Draws the outline of a shape; `css` holds attributes that style sheets set. Says what is wrong
+    /// with data of which only the beginning could be drawn.
     pub(super) fn trace(
         &self,
         node: Node<'_, '_>,
+        css: &[(String, String)],
         viewport: [f64; 2],
         outline: &mut Outline,
-    ) -> Result<(), Error> {
+    ) -> Result<Option<String>, SvgError> {
         let [width, height] = viewport;
         let diagonal = ((width * width + height * height) / 2.0).sqrt();
-        let number =
-            |name: &str, of: f64| Ok::<_, Error>(self.length(node, name, of)?.unwrap_or(0.0));
+        let from_css = |name: &str| {
+            css.iter().rev().find(|(property, _)| property == name).map(|(_, value)| value.as_str())
+        };
+        let length = |name: &str, of: f64| match from_css(name) {
+            Some(text) => match parse_length(text, of) {
+                Ok(length) => Ok(length),
+                // What cannot be read in CSS has no effect.
+                Err(()) => self.length(node, name, of),
+            },
+            None => self.length(node, name, of),
+        };
+        let number = |name: &str, of: f64| Ok::<_, SvgError>(length(name, of)?.unwrap_or(0.0));
         match node.tag_name().name() {
-            "path" => self.trace_path(node, outline)?,
+            "path" => {
+                let data = match from_css("d") {
+                    Some(css) => css_path(css),
+                    None => node.attribute("d").unwrap_or_default(),
+                };
+                return Ok(trace_path(data, outline));
+            }
             "line" => {
                 outline.move_to(Point::new(number("x1", width)?, number("y1", height)?));
                 outline.line_to(Point::new(number("x2", width)?, number("y2", height)?));
             }
             name @ ("polyline" | "polygon") => {
                 let text = node.attribute("points").unwrap_or_default();
+                let mut n_read = 0;
                 for (i, (x, y)) in PointsParser::from(text).enumerate() {
                     let p = Point::new(x, y);
-                    if i == 0 { outline.move_to(p) } else { outline.line_to(p) }
+                    if i == 0 {
+                        outline.move_to(p)
+                    } else {
+                        outline.line_to(p)
+                    }
+                    n_read = i + 1;
                 }
                 if name == "polygon" {
                     outline.close();
+                }
+                if 2 * n_read < n_numbers(text) {
+                    return Ok(Some(format!(
+                        "the points of <{name}> are drawn up to an error after the first {n_read}"
+                    )));
                 }
             }
             "rect" => {
                 let (x, y) = (number("x", width)?, number("y", height)?);
                 let (w, h) = (number("width", width)?, number("height", height)?);
-                let rx = self.length(node, "rx", width)?;
-                let ry = self.length(node, "ry", height)?;
+                let rx = length("rx", width)?;
+                let ry = length("ry", height)?;
                 let radius = |own: Option<f64>, other: Option<f64>, side: f64| {
                     own.or(other).unwrap_or(0.0).clamp(0.0, side / 2.0)
                 };
@@ -248,76 +279,88 @@ impl Reader<'_, '_> {
             }
             _ => {}
         }
-        Ok(())
+        Ok(None)
     }
+}
 
-    fn trace_path(&self, node: Node<'_, '_>, outline: &mut Outline) -> Result<(), Error> {
-        let text = node.attribute("d").unwrap_or_default();
-        // The control point that a smooth curve mirrors, and whether it was a cubic's.
-        let mut control: Option<(Point, bool)> = None;
-        for segment in PathParser::from(text) {
-            let segment = segment.map_err(|_| self.bad_value(node, "d"))?;
-            let last = outline.last;
-            let at = |abs: bool, x: f64, y: f64| {
-                if abs { Point::new(x, y) } else { Point::new(last.x + x, last.y + y) }
-            };
-            let mirrored = |cubic: bool| match control {
-                Some((p, c)) if c == cubic => last + (last - p),
-                _ => last,
-            };
-            let mut next_control = None;
-            match segment {
-                PathSegment::MoveTo { abs, x, y } => outline.move_to(at(abs, x, y)),
-                PathSegment::LineTo { abs, x, y } => outline.line_to(at(abs, x, y)),
-                PathSegment::HorizontalLineTo { abs, x } => {
-                    outline.line_to(Point::new(if abs { x } else { last.x + x }, last.y));
-                }
-                PathSegment::VerticalLineTo { abs, y } => {
-                    outline.line_to(Point::new(last.x, if abs { y } else { last.y + y }));
-                }
-                PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
-                    let second = at(abs, x2, y2);
-                    outline.curve(PathEl::CurveTo(at(abs, x1, y1), second, at(abs, x, y)));
-                    next_control = Some((second, true));
-                }
-                PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
-                    let second = at(abs, x2, y2);
-                    outline.curve(PathEl::CurveTo(mirrored(true), second, at(abs, x, y)));
-                    next_control = Some((second, true));
-                }
-                PathSegment::Quadratic { abs, x1, y1, x, y } => {
-                    let middle = at(abs, x1, y1);
-                    outline.curve(PathEl::QuadTo(middle, at(abs, x, y)));
-                    next_control = Some((middle, false));
-                }
-                PathSegment::SmoothQuadratic { abs, x, y } => {
-                    let middle = mirrored(false);
-                    outline.curve(PathEl::QuadTo(middle, at(abs, x, y)));
-                    next_control = Some((middle, false));
-                }
-                PathSegment::EllipticalArc {
-                    abs,
-                    rx,
-                    ry,
-                    x_axis_rotation,
-                    large_arc,
-                    sweep,
-                    x,
-                    y,
-                } => outline.arc(&SvgArc {
+/// The data in CSS's `path("…")`; nothing for `none`.
+fn css_path(css: &str) -> &str {
+    let inner = css.strip_prefix("path(").and_then(|rest| rest.strip_suffix(')'));
+    let inner = inner.unwrap_or_default().trim();
+    // A fill rule may come first.
+    let inner = inner.split_once(['"', '\'']).map_or("", |(_, rest)| rest);
+    inner.trim_end_matches(['"', '\''])
+}
+
+/// Words that may be numbers.
+fn n_numbers(text: &str) -> usize {
+    text.split([' ', ',', '\t', '\r', '\n']).filter(|word| !word.is_empty()).count()
+}
+
+/// Draws path data up to its first error, and says where that is.
+fn trace_path(text: &str, outline: &mut Outline) -> Option<String> {
+    // The control point that a smooth curve mirrors, and whether it was a cubic's.
+    let mut control: Option<(Point, bool)> = None;
+    for segment in PathParser::from(text) {
+        let segment = match segment {
+            Ok(segment) => segment,
+            Err(error) => {
+                return Some(format!("path data is drawn up to an error: {error}"));
+            }
+        };
+        let last = outline.last;
+        let at = |abs: bool, x: f64, y: f64| {
+            if abs { Point::new(x, y) } else { Point::new(last.x + x, last.y + y) }
+        };
+        let mirrored = |cubic: bool| match control {
+            Some((p, c)) if c == cubic => last + (last - p),
+            _ => last,
+        };
+        let mut next_control = None;
+        match segment {
+            PathSegment::MoveTo { abs, x, y } => outline.move_to(at(abs, x, y)),
+            PathSegment::LineTo { abs, x, y } => outline.line_to(at(abs, x, y)),
+            PathSegment::HorizontalLineTo { abs, x } => {
+                outline.line_to(Point::new(if abs { x } else { last.x + x }, last.y));
+            }
+            PathSegment::VerticalLineTo { abs, y } => {
+                outline.line_to(Point::new(last.x, if abs { y } else { last.y + y }));
+            }
+            PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
+                let second = at(abs, x2, y2);
+                outline.curve(PathEl::CurveTo(at(abs, x1, y1), second, at(abs, x, y)));
+                next_control = Some((second, true));
+            }
+            PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
+                let second = at(abs, x2, y2);
+                outline.curve(PathEl::CurveTo(mirrored(true), second, at(abs, x, y)));
+                next_control = Some((second, true));
+            }
+            PathSegment::Quadratic { abs, x1, y1, x, y } => {
+                let middle = at(abs, x1, y1);
+                outline.curve(PathEl::QuadTo(middle, at(abs, x, y)));
+                next_control = Some((middle, false));
+            }
+            PathSegment::SmoothQuadratic { abs, x, y } => {
+                let middle = mirrored(false);
+                outline.curve(PathEl::QuadTo(middle, at(abs, x, y)));
+                next_control = Some((middle, false));
+            }
+            PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
+                outline.arc(&SvgArc {
                     from: last,
                     to: at(abs, x, y),
                     radii: Vec2::new(rx, ry),
                     x_rotation: x_axis_rotation.to_radians(),
                     large_arc,
                     sweep,
-                }),
-                PathSegment::ClosePath { .. } => outline.close(),
+                })
             }
-            control = next_control;
+            PathSegment::ClosePath { .. } => outline.close(),
         }
-        Ok(())
+        control = next_control;
     }
+    None
 }
 
 /// Clockwise from the end of the upper left corner, as SVG has it.

@@ -4,31 +4,100 @@
 use std::str::FromStr;
 
 use roxmltree::Node;
-use simplecss::{AttributeOperator, DeclarationTokenizer, Element, PseudoClass};
-use svgtypes::{Length, LengthUnit, Paint};
+use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, Element, PseudoClass};
+use svgtypes::{Length, LengthListParser, LengthUnit, Paint};
 
-/// Properties in effect for an element.
+use super::dash_array::DashArray;
+use super::region::FillRule;
+
+/// Properties in effect for an element that its children inherit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Style {
-    /// Whether the element and its children are shown at all.
+    /// Whether the element and its children are shown at all: `display`, and `opacity` above 0.
     pub(super) displayed: bool,
     visible: bool,
-    stroke: Option<String>,
-    filled: bool,
-    fill: Option<String>,
+    /// The product of all `opacity` around the element.
+    opacity: f64,
+    color: String,
+    stroke: Ink,
+    fill: Ink,
+    /// Which rule fills the element's area.
+    pub(super) fill_rule: FillRule,
+    /// Which rule fills the element's area where it clips.
+    pub(super) clip_rule: FillRule,
     /// In user units.
     pub(super) stroke_width: f64,
+    dashes: Vec<Length>,
+    dash_offset: Length,
 }
+
+/// What a stroke or a fill is painted with.
+#[derive(Debug, Clone, PartialEq)]
+struct Ink {
+    /// `None` for no paint.
+    color: Option<String>,
+    /// Of the paint.
+    alpha: f64,
+    /// `stroke-opacity` or `fill-opacity`.
+    opacity: f64,
+}
+
+impl Ink {
+    fn shows(&self) -> bool {
+        self.color.is_some() && self.alpha > 0.0 && self.opacity > 0.0
+    }
+
+    fn set(&mut self, value: &str, around: &Self, current: &str) {
+        (self.color, self.alpha) = match Paint::from_str(value) {
+            Ok(Paint::None) => (None, 1.0),
+            Ok(Paint::Inherit) => (around.color.clone(), around.alpha),
+            Ok(Paint::Color(color)) => (Some(hex(color)), f64::from(color.alpha) / 255.0),
+            Ok(Paint::CurrentColor) => (Some(current.to_owned()), 1.0),
+            // Gradients and patterns.
+            Ok(_) => (Some("#000000".to_owned()), 1.0),
+            // As everywhere in CSS, what cannot be read has no effect.
+            Err(_) => return,
+        };
+    }
+}
+
+/// Properties of an element that its children do not inherit.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct OwnStyle {
+    /// CSS `transform`, which replaces the attribute.
+    pub(super) transform: Option<String>,
+    /// `transform-origin`, as a property or an attribute.
+    pub(super) transform_origin: Option<String>,
+    /// `clip-path`.
+    pub(super) clip_path: Option<String>,
+    /// Whether there is a `mask`.
+    pub(super) has_mask: bool,
+    /// `overflow: visible`, for pictures within pictures.
+    pub(super) overflows: bool,
+    /// `vector-effect: non-scaling-stroke`.
+    pub(super) keeps_stroke_width: bool,
+    /// Attributes of shapes that are set by CSS: `d`, `cx`, `width` and so on.
+    pub(super) geometry: Vec<(String, String)>,
+}
+
+/// Attributes of shapes that are properties in CSS.
+const GEOMETRY: [&str; 10] = ["d", "cx", "cy", "r", "rx", "ry", "x", "y", "width", "height"];
 
 impl Default for Style {
     fn default() -> Self {
+        let black = Some("#000000".to_owned());
         Self {
             displayed: true,
             visible: true,
-            stroke: None,
-            filled: true,
-            fill: None,
+            opacity: 1.0,
+            color: "#000000".to_owned(),
+            stroke: Ink { color: None, alpha: 1.0, opacity: 1.0 },
+            fill: Ink { color: black, alpha: 1.0, opacity: 1.0 },
+            fill_rule: FillRule::NonZero,
+            clip_rule: FillRule::NonZero,
             stroke_width: 1.0,
+            dashes: Vec::new(),
+            dash_offset: Length::zero(),
         }
     }
 }
@@ -36,37 +105,63 @@ impl Default for Style {
 impl Style {
     /// Whether a shape's outline is drawn: it has a stroke, or a fill that shows where it is.
     pub(super) fn is_seen(&self) -> bool {
-        self.visible && (self.stroke.is_some() || self.filled)
+        self.visible && (self.has_stroke() || self.fill.shows())
+    }
+
+    /// Whether the shape counts where it clips others, for which paint does not matter.
+    pub(super) fn is_visible(&self) -> bool {
+        self.visible
+    }
+
+    /// Whether a pen follows the shape's outline because it has a stroke.
+    pub(super) fn has_stroke(&self) -> bool {
+        self.stroke.shows() && self.stroke_width > 0.0
+    }
+
+    /// Whether nothing shows through the shape's fill.
+    pub(super) fn is_opaque(&self) -> bool {
+        let all = self.opacity * self.fill.alpha * self.fill.opacity;
+        self.visible && self.fill.color.is_some() && all >= 1.0
     }
 
     /// Color of the pen: the stroke's, or else the fill's.
-    pub(super) fn color(&self) -> String {
-        let color = self.stroke.as_ref().or(self.fill.as_ref());
-        color.map_or_else(|| "#000000".to_owned(), Clone::clone)
+    pub(super) fn pen_color(&self) -> String {
+        let ink = if self.has_stroke() { &self.stroke } else { &self.fill };
+        ink.color.clone().unwrap_or_else(|| "#000000".to_owned())
     }
 
-    fn set(&mut self, name: &str, value: &str, around: &Self) {
+    /// The dashes of the stroke; percentages are of `diagonal`.
+    pub(super) fn dash_array(&self, diagonal: f64) -> Option<DashArray> {
+        let lengths: Option<Vec<f64>> =
+            self.dashes.iter().map(|&length| user_units(length, diagonal)).collect();
+        let offset = user_units(self.dash_offset, diagonal).unwrap_or(0.0);
+        DashArray::new(lengths?, offset)
+    }
+
+    fn set(&mut self, own: &mut OwnStyle, name: &str, value: &str, around: &Self) {
         let value = value.trim();
+        let inherits = value == "inherit";
         match name {
-            "display" if value != "inherit" => self.displayed = value != "none",
-            "visibility" if value != "inherit" => self.visible = value == "visible",
-            "stroke" => match Paint::from_str(value) {
-                Ok(Paint::None) => self.stroke = None,
-                Ok(Paint::Inherit) => self.stroke.clone_from(&around.stroke),
-                Ok(Paint::Color(color)) => self.stroke = Some(hex(color)),
-                Ok(_) => self.stroke = Some("#000000".to_owned()),
-                // As everywhere in CSS, what cannot be read has no effect.
-                Err(_) => {}
-            },
-            "fill" => match Paint::from_str(value) {
-                Ok(Paint::None) => (self.filled, self.fill) = (false, None),
-                Ok(Paint::Inherit) => {
-                    (self.filled, self.fill) = (around.filled, around.fill.clone());
+            "display" if !inherits => self.displayed = around.displayed && value != "none",
+            "visibility" if !inherits => self.visible = value == "visible",
+            "opacity" => {
+                if let Some(opacity) = number(value) {
+                    self.opacity = around.opacity * opacity;
                 }
-                Ok(Paint::Color(color)) => (self.filled, self.fill) = (true, Some(hex(color))),
-                Ok(_) => (self.filled, self.fill) = (true, None),
-                Err(_) => {}
-            },
+            }
+            "color" => {
+                if let Ok(color) = svgtypes::Color::from_str(value) {
+                    self.color = hex(color);
+                }
+            }
+            "stroke" => self.stroke.set(value, &around.stroke, &self.color),
+            "fill" => self.fill.set(value, &around.fill, &self.color),
+            "stroke-opacity" => {
+                self.stroke.opacity = number(value).unwrap_or(around.stroke.opacity)
+            }
+            "fill-opacity" => self.fill.opacity = number(value).unwrap_or(around.fill.opacity),
+            "fill-rule" => self.fill_rule = fill_rule(value).unwrap_or(around.fill_rule),
+            "clip-rule" => self.clip_rule = fill_rule(value).unwrap_or(around.clip_rule),
             "stroke-width" => {
                 if let Ok(length) = Length::from_str(value)
                     && let Some(width) = user_units(length, 0.0)
@@ -75,8 +170,48 @@ impl Style {
                     self.stroke_width = width;
                 }
             }
+            "stroke-dasharray" if value == "none" => self.dashes.clear(),
+            "stroke-dasharray" if !inherits => {
+                let lengths: Result<Vec<Length>, _> = LengthListParser::from(value).collect();
+                if let Ok(lengths) = lengths {
+                    self.dashes = lengths;
+                }
+            }
+            "stroke-dashoffset" => {
+                self.dash_offset = Length::from_str(value).unwrap_or(around.dash_offset)
+            }
+            "transform-origin" => own.transform_origin = Some(value.to_owned()),
+            "clip-path" => own.clip_path = Some(value.to_owned()).filter(|value| value != "none"),
+            "mask" => own.has_mask = value != "none",
+            "overflow" => own.overflows = value == "visible",
+            "vector-effect" => own.keeps_stroke_width = value.contains("non-scaling-stroke"),
             _ => {}
         }
+    }
+
+    fn set_from_css(&mut self, own: &mut OwnStyle, css: &Declaration<'_>, around: &Self) {
+        match css.name {
+            "transform" => own.transform = Some(css.value.to_owned()),
+            name if GEOMETRY.contains(&name) => {
+                own.geometry.push((name.to_owned(), css.value.trim().to_owned()));
+            }
+            name => self.set(own, name, css.value, around),
+        }
+    }
+}
+
+/// A number or a percentage, between 0 and 1.
+fn number(text: &str) -> Option<f64> {
+    let (text, unit) = text.strip_suffix('%').map_or((text, 1.0), |text| (text, 0.01));
+    let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite())?;
+    Some((value * unit).clamp(0.0, 1.0))
+}
+
+fn fill_rule(value: &str) -> Option<FillRule> {
+    match value {
+        "nonzero" => Some(FillRule::NonZero),
+        "evenodd" => Some(FillRule::EvenOdd),
+        _ => None,
     }
 }
 
@@ -104,21 +239,22 @@ impl<'a> StyleSheet<'a> {
     }
 
     /// The style of `node` inside an element of style `around`.
-    pub(super) fn style(&self, node: Node<'_, '_>, around: &Style) -> Style {
-        let mut style = around.clone();
+    pub(super) fn style(&self, node: Node<'_, '_>, around: &Style) -> (Style, OwnStyle) {
+        let (mut style, mut own) = (around.clone(), OwnStyle::default());
         for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
-            style.set(attribute.name(), attribute.value(), around);
+            style.set(&mut own, attribute.name(), attribute.value(), around);
         }
         let matching = self.rules.rules.iter().filter(|rule| rule.selector.matches(&XmlNode(node)));
-        for declaration in matching.flat_map(|rule| &rule.declarations) {
-            style.set(declaration.name, declaration.value, around);
-        }
-        if let Some(text) = node.attribute("style") {
-            for declaration in DeclarationTokenizer::from(text) {
-                style.set(declaration.name, declaration.value, around);
+        let mut css: Vec<Declaration<'_>> =
+            matching.flat_map(|rule| &rule.declarations).copied().collect();
+        css.extend(node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from));
+        for important in [false, true] {
+            for declaration in css.iter().filter(|css| css.important == important) {
+                style.set_from_css(&mut own, declaration, around);
             }
         }
-        style
+        style.displayed &= style.opacity > 0.0;
+        (style, own)
     }
 }
 
@@ -146,19 +282,17 @@ impl Element for XmlNode<'_, '_> {
     }
 }
 
-/// A length attribute in user units, `None` if absent or `auto`; an error if it is no finite
-/// length.
-pub(super) fn length_attribute(node: Node<'_, '_>, name: &str, of: f64) -> Result<Option<f64>, ()> {
-    let Some(text) = node.attribute(name).map(str::trim) else { return Ok(None) };
-    if text == "auto" {
+/// A length in user units, `None` for `auto`; an error if it is no finite length.
+pub(super) fn parse_length(text: &str, of: f64) -> Result<Option<f64>, ()> {
+    if text.trim() == "auto" {
         return Ok(None);
     }
-    let length = Length::from_str(text).map_err(|_| ())?;
+    let length = Length::from_str(text.trim()).map_err(|_| ())?;
     user_units(length, of).map(Some).ok_or(())
 }
 
 /// CSS pixels; letters are taken as 16 pixels high.
-fn user_units(length: Length, of: f64) -> Option<f64> {
+pub(super) fn user_units(length: Length, of: f64) -> Option<f64> {
     let unit = match length.unit {
         LengthUnit::None | LengthUnit::Px => 1.0,
         LengthUnit::Em => 16.0,

@@ -1,7 +1,8 @@
-//! DXF R12 (AC1009), which every CAD and CAM program reads: polylines on one layer a pen.
+//! DXF R12 (AC1009), which every CAD and CAM program reads: polylines on one layer for each pen.
 //!
-//! Millimetres, y up, origin at the page's bottom left. R12 has no unit setting; readers take units
-//! as they are set to. The `dxf` crate brings 35 others for what is 80 lines here.
+//! Millimeters, y up, origin at the page's bottom left. `$INSUNITS` and `$MEASUREMENT` say so; they
+//! are younger than R12, and readers that do not know them skip them. The `dxf` crate brings 35
+//! others for what is 80 lines here.
 
 use std::io;
 
@@ -11,8 +12,10 @@ use super::decimal::Decimal;
 use super::{Format, only_lines};
 use crate::plot::{Layer, Plot};
 
-/// Decimals of a millimetre.
+/// Decimals of a millimeter.
 const DECIMALS: u32 = 4;
+/// The value of `$INSUNITS` for millimeters.
+const MILLIMETERS: &str = "4";
 
 /// Writes `plot` as DXF R12. Strokes without extent are points.
 ///
@@ -25,6 +28,10 @@ pub fn write(plot: &Plot, out: &mut dyn io::Write) -> io::Result<()> {
     out.text(2, "HEADER")?;
     out.text(9, "$ACADVER")?;
     out.text(1, "AC1009")?;
+    out.text(9, "$INSUNITS")?;
+    out.text(70, MILLIMETERS)?;
+    out.text(9, "$MEASUREMENT")?;
+    out.text(70, "1")?;
     out.text(9, "$EXTMIN")?;
     out.point(DVec2::ZERO)?;
     out.text(9, "$EXTMAX")?;

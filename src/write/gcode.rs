@@ -1,6 +1,6 @@
-//! G-code from templates: complete profiles for GRBL and Marlin, and one's own.
+//! G-code from templates: complete profiles for GRBL and Marlin, and templates for other machines.
 //!
-//! Millimetres or inches, absolute positions; the origin is the page's bottom left corner with y
+//! Millimeters or inches, absolute positions; the origin is the page's bottom left corner with y
 //! up, unless the profile keeps the page's top left. No crate writes G-code for pens.
 
 use std::collections::BTreeMap;
@@ -48,7 +48,8 @@ pub struct Profile {
     /// After each layer.
     #[serde(default)]
     pub layer_end: String,
-    /// Between two layers, before the second one's start; to change pens.
+    /// Between two layers, before the second one's start, to change pens; also before a first layer
+    /// that asks for a pause.
     #[serde(default)]
     pub pen_change: String,
     /// After everything.
@@ -66,7 +67,7 @@ fn yes() -> bool {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Unit {
-    /// Millimetres, `G21`.
+    /// Millimeters, `G21`.
     #[default]
     Mm,
     /// Inches, `G20`.
@@ -93,7 +94,7 @@ pub enum Error {
         /// All names.
         known: String,
     },
-    /// A template names something that there is not.
+    /// A template has a placeholder that does not exist.
     #[error("template {template}: unknown placeholder {{{placeholder}}}; known are {known}")]
     UnknownPlaceholder {
         /// The template's name.
@@ -128,16 +129,16 @@ impl Profile {
     /// Names of the built-in profiles.
     ///
     /// # Errors
-    /// None but for a defect in the profiles themselves.
+    /// Only for a defect in the profiles themselves.
     pub fn names() -> Result<Vec<String>, Error> {
         let profiles = profiles_from(include_str!("gcode_profiles.toml"))?;
         Ok(profiles.into_keys().collect())
     }
 
-    /// A known profile as TOML, to make one's own from; `None` when there is none of that name.
+    /// A known profile as TOML, to start from; `None` when there is none of that name.
     ///
     /// # Errors
-    /// None but for a defect in the profiles themselves.
+    /// Only for a defect in the profiles themselves.
     pub fn table(name: &str) -> Result<Option<toml::Table>, Error> {
         let mut all: toml::Table = toml::from_str(include_str!("gcode_profiles.toml"))?;
         Ok(all.remove(name).and_then(|profile| profile.as_table().cloned()))
@@ -213,7 +214,7 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
     let mut first = true;
     for layer in plot.plotted_layers().filter(|layer| !layer.lines.is_empty()) {
         writer.layer = Some(layer);
-        if !first {
+        if !first || layer.pauses() {
             writer.expand(&profile.pen_change, 0.0, 0.0);
         }
         first = false;

@@ -4,6 +4,7 @@
 //! Instructions are short, since plotters of that age have buffers of a few hundred bytes. No crate
 //! writes HPGL.
 
+use std::collections::BTreeSet;
 use std::io;
 
 use glam::{DVec2, dvec2};
@@ -26,13 +27,19 @@ pub struct Machine {
     pub name: String,
     /// Name on the machine.
     pub title: String,
-    /// Plotter unit in millimetres.
+    /// Plotter unit in millimeters.
     pub unit: f64,
+    /// Where unit, limits and pens are documented.
+    #[serde(default)]
+    pub manual: String,
     /// Pens it holds.
     pub pens: u32,
     /// Value of `VS`, the pen's speed in cm/s; the machine's own where there is none.
     #[serde(default)]
     pub speed: Option<u32>,
+    /// Value of `FS`, the pen's force in steps of the machine; its own where there is none.
+    #[serde(default)]
+    pub force: Option<u32>,
     /// Papers it takes.
     pub paper: Vec<Paper>,
 }
@@ -46,13 +53,13 @@ pub struct Paper {
     /// What to set or to know.
     #[serde(default)]
     pub note: String,
-    /// Width and height in millimetres.
+    /// Width and height in millimeters.
     pub size: [f64; 2],
     /// Hard clip limits along x in plotter units.
     pub x: [i32; 2],
     /// Hard clip limits along y in plotter units.
     pub y: [i32; 2],
-    /// Where plotter position (0, 0) is, in millimetres from the top left corner.
+    /// Where plotter position (0, 0) is, in millimeters from the top left corner.
     pub origin: [f64; 2],
     /// Whether the page is drawn upside down.
     #[serde(default)]
@@ -116,6 +123,16 @@ pub enum Error {
         /// How many pens there are.
         pens: u32,
     },
+    /// A drawing has more layers and colors than the plotter has pens.
+    #[error("the drawing needs {needed} pens and {machine} holds {pens}")]
+    TooManyPens {
+        /// The plotter.
+        machine: String,
+        /// How many pens the drawing needs.
+        needed: usize,
+        /// How many pens there are.
+        pens: u32,
+    },
     /// A list of plotters does not read.
     #[error("plotter profiles: {0}")]
     Toml(#[from] toml::de::Error),
@@ -156,7 +173,7 @@ impl Profile {
         Self::on(plot, machines.swap_remove(index), paper)
     }
 
-    /// As [`Profile::new`], on a plotter of one's own.
+    /// As [`Profile::new`], for a plotter that is not built in.
     ///
     /// # Errors
     /// As there.
@@ -199,6 +216,62 @@ impl Profile {
     }
 }
 
+impl Profile {
+    /// What of the page the pen can reach: lowest and highest corner in page millimeters.
+    pub fn reach(&self, plot: &Plot) -> [DVec2; 2] {
+        let Self { machine, paper } = self;
+        let corner = |x: i32, y: i32| {
+            let units = dvec2(f64::from(x), f64::from(y)) * machine.unit;
+            let mut p = dvec2(paper.origin[0] + units.x, paper.origin[1] - units.y);
+            if paper.turned {
+                p = dvec2(paper.size[0] - p.x, paper.size[1] - p.y);
+            }
+            if is_sideways(plot, paper) { dvec2(plot.width_mm - p.y, p.x) } else { p }
+        };
+        let (a, b) = (corner(paper.x[0], paper.y[0]), corner(paper.x[1], paper.y[1]));
+        let sheet = dvec2(plot.width_mm, plot.height_mm);
+        [a.min(b).clamp(DVec2::ZERO, sheet), a.max(b).clamp(DVec2::ZERO, sheet)]
+    }
+}
+
+impl Machine {
+    /// The widest border of a sheet of this size that the pen cannot reach, in millimeters; `None` if
+    /// the machine does not take the sheet. Either side may be the longer one.
+    pub fn unreachable_border_mm(&self, width_mm: f64, height_mm: f64) -> Option<f64> {
+        let page = Plot { width_mm, height_mm, ..Plot::default() };
+        let [low, high] = Profile::on(&page, self.clone(), None).ok()?.reach(&page);
+        let beyond = dvec2(width_mm, height_mm) - high;
+        Some(low.max_element().max(beyond.max_element()))
+    }
+
+    /// Gives the layers of a drawing that was read the machine's pens: numbers that the machine has
+    /// are kept, and other layers get the lowest free ones, in order.
+    ///
+    /// # Errors
+    /// [`Error::TooManyPens`] if more layers have ink than the machine has pens.
+    pub fn assign_pens(&self, plot: &mut Plot) -> Result<(), Error> {
+        plot.layers.retain(|layer| !layer.lines.is_empty() && layer.is_plotted());
+        if plot.layers.len() > self.pens as usize {
+            let (machine, needed) = (self.title.clone(), plot.layers.len());
+            return Err(Error::TooManyPens { machine, needed, pens: self.pens });
+        }
+        let is_there = |number: u32| (1..=self.pens).contains(&number);
+        let numbers = plot.layers.iter().map(|layer| layer.number);
+        let mut taken: BTreeSet<u32> = numbers.filter(|&number| is_there(number)).collect();
+        for layer in plot.layers.iter_mut().filter(|layer| !is_there(layer.number)) {
+            let free = (1..=self.pens).find(|number| !taken.contains(number));
+            layer.number = free.unwrap_or(1);
+            taken.insert(layer.number);
+        }
+        Ok(())
+    }
+}
+
+/// Whether the page fits the paper only when it is turned a quarter to the left.
+fn is_sideways(plot: &Plot, paper: &Paper) -> bool {
+    !fits(plot, paper, false) && fits(plot, paper, true)
+}
+
 fn fits(plot: &Plot, paper: &Paper, sideways: bool) -> bool {
     let [width, height] = if sideways { [paper.size[1], paper.size[0]] } else { paper.size };
     (plot.width_mm - width).abs() <= SIZE_TOLERANCE_MM
@@ -206,7 +279,7 @@ fn fits(plot: &Plot, paper: &Paper, sideways: bool) -> bool {
 }
 
 /// Writes `plot` for the plotter. Pages upright are turned a quarter to the left if only that fits
-/// the paper; what lies beyond the plotter's limits is cut off.
+/// the paper; what lies outside of [`Profile::reach`] is cut off.
 ///
 /// # Errors
 /// Those of `out`.
@@ -227,6 +300,9 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
         if let Some(speed) = machine.speed {
             write!(out, "VS{speed};")?;
         }
+        if let Some(force) = machine.force {
+            write!(out, "FS{force};")?;
+        }
         for line in layer.lines.iter() {
             let units: Vec<DVec2> = line.iter().map(|&p| to_units(p, plot, profile)).collect();
             for piece in clip(&units, low, high) {
@@ -237,11 +313,11 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
     writeln!(out, "\nPA;PU{},{};SP0;IN;", paper.park[0], paper.park[1])
 }
 
-/// Page millimetres to plotter units, not yet rounded.
+/// Page millimeters to plotter units, not yet rounded.
 fn to_units(p: DVec2, plot: &Plot, profile: &Profile) -> DVec2 {
     let Profile { machine, paper } = profile;
     let mut p = p;
-    if !fits(plot, paper, false) && fits(plot, paper, true) {
+    if is_sideways(plot, paper) {
         p = dvec2(p.y, plot.width_mm - p.x);
     }
     if paper.turned {

@@ -1,4 +1,4 @@
-//! Files: one writer a format, each a function of a finished page and a stream.
+//! Output files: one writer for each format, a function of a finished page and a stream.
 
 #[cfg(feature = "plotters")]
 mod clip;
@@ -26,7 +26,7 @@ use crate::plot::Plot;
 /// What can be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Scalable vector graphics in millimetres, one layer a pen.
+    /// Scalable vector graphics in millimeters, one layer for each pen.
     Svg,
     /// Instructions for pen plotters.
     Hpgl,
@@ -85,7 +85,7 @@ impl Format {
         matches!(self, Self::Svg | Self::Pdf | Self::Png)
     }
 
-    /// Whether the format is bytes rather than text.
+    /// Whether the format is binary rather than text.
     pub fn is_binary(self) -> bool {
         matches!(self, Self::Png | Self::Pdf)
     }

@@ -11,7 +11,7 @@ use pdf_writer::{Content, Finish, Pdf, Rect, Ref, TextStr};
 
 use crate::plot::{Fills, Plot};
 
-/// Points in a millimetre.
+/// Points in a millimeter.
 const POINTS_PER_MM: f32 = 72.0 / 25.4;
 
 /// Writes `plot` as PDF. The whole file is made in memory first.
@@ -39,7 +39,7 @@ pub fn write(plot: &Plot, out: &mut dyn io::Write) -> io::Result<()> {
 fn content(plot: &Plot) -> Content {
     let height = plot.height_mm as f32 * POINTS_PER_MM;
     let mut content = Content::new();
-    // Page millimetres with y down from here on.
+    // Page millimeters with y down from here on.
     content.transform([POINTS_PER_MM, 0.0, 0.0, -POINTS_PER_MM, 0.0, height]);
     content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
     for layer in plot.plotted_layers() {

@@ -46,7 +46,7 @@ pub struct Marks {
     pub order: bool,
 }
 
-/// Width of the lines that stand for ways with the pen up, in millimetres.
+/// Width of the lines that stand for ways with the pen up, in millimeters.
 const TRAVEL_WIDTH_MM: f64 = 0.15;
 
 /// Color of these lines.
@@ -70,7 +70,7 @@ pub enum PngError {
         height_px: f64,
     },
     /// A color that is not `#rrggbb`.
-    #[error("`{0}` is no color; colors are written #rrggbb")]
+    #[error("`{0}` is not a color; write colors as #rrggbb")]
     Color(String),
     /// The stream failed.
     #[error(transparent)]
@@ -79,7 +79,7 @@ pub enum PngError {
 
 /// Writes a picture of `plot`. O(pixels + strokes).
 ///
-/// Lines are as wide as their pen, to scale; the file says how many pixels make a metre.
+/// Lines are as wide as their pen, to scale; the file says how many pixels make a meter.
 ///
 /// # Errors
 /// See [`PngError`].
@@ -237,10 +237,10 @@ fn encode(
     encoder.set_color(if gray { ColorType::Grayscale } else { ColorType::Rgb });
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Balanced);
-    let per_metre = (px_per_mm * 1000.0).round() as u32;
+    let per_meter = (px_per_mm * 1000.0).round() as u32;
     encoder.set_pixel_dims(Some(PixelDimensions {
-        xppu: per_metre,
-        yppu: per_metre,
+        xppu: per_meter,
+        yppu: per_meter,
         unit: Unit::Meter,
     }));
     let mut writer = encoder.write_header().map_err(io::Error::from)?;

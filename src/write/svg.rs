@@ -1,4 +1,4 @@
-//! SVG for plotters and print: true millimetres, one Inkscape layer a pen, strokes and filled areas.
+//! SVG for plotters and print: true millimeters, one Inkscape layer for each pen, strokes and filled areas.
 //!
 //! The `svg` crate builds the document: root, title, metadata and layers. The strokes of a layer
 //! are put in as one prepared text, for two reasons: the crate's path numbers are `f32`, and a node
@@ -28,13 +28,14 @@ pub enum StrokeElement {
 
 /// Writes `plot` as SVG. The same plot gives the same bytes.
 ///
-/// Coordinates are millimetres with up to three decimals. Points that are equal after rounding to
-/// these are one; a stroke of which one point is left is left out. O(points).
+/// Coordinates are millimeters with up to three decimals. Points that are equal after rounding to
+/// these are one; a stroke of which one point is left is left out. A dot is a line to where it begins,
+/// which round caps make visible. O(points).
 ///
 /// # Errors
 /// Those of `out`.
 pub fn write(plot: &Plot, element: StrokeElement, out: &mut dyn io::Write) -> io::Result<()> {
-    let (width, height) = (millimetres(plot.width_mm), millimetres(plot.height_mm));
+    let (width, height) = (millimeters(plot.width_mm), millimeters(plot.height_mm));
     let mut document = Document::new()
         .set("xmlns:inkscape", "http://www.inkscape.org/namespaces/inkscape")
         .set("width", format!("{width}mm"))
@@ -76,7 +77,7 @@ fn group(layer: &Layer, element: StrokeElement) -> Group {
         .set("inkscape:label", printable(&layer.label()))
         .set("fill", "none")
         .set("stroke", layer.pen.color.as_str())
-        .set("stroke-width", millimetres(layer.pen.width_mm))
+        .set("stroke-width", millimeters(layer.pen.width_mm))
         .set("stroke-linecap", "round")
         .set("stroke-linejoin", "round");
     let fills = fills(&layer.fills);
@@ -98,7 +99,7 @@ fn fills(fills: &Fills) -> String {
         let color = format!("#{r:02x}{g:02x}{b:02x}");
         let mut path = Vec::new();
         for ring in area.rings() {
-            let mut points: Vec<[i64; 2]> = ring.iter().map(|&p| micrometres(p)).collect();
+            let mut points: Vec<[i64; 2]> = ring.iter().map(|&p| micrometers(p)).collect();
             points.dedup();
             if points.len() > 1 && points.first() == points.last() {
                 points.pop();
@@ -119,7 +120,7 @@ fn fills(fills: &Fills) -> String {
         if !text.is_empty() {
             text.push('\n');
         }
-        let seam = millimetres(fills.seam_mm);
+        let seam = millimeters(fills.seam_mm);
         let outline = if seam == "0" {
             "stroke=\"none\"".to_owned()
         } else {
@@ -169,10 +170,13 @@ fn text_of(lines: &[&[DVec2]], element: StrokeElement) -> String {
     let mut points: Vec<[i64; 2]> = Vec::new();
     for line in lines {
         points.clear();
-        points.extend(line.iter().map(|&p| micrometres(p)));
+        points.extend(line.iter().map(|&p| micrometers(p)));
         points.dedup();
         if points.len() < 2 {
-            continue;
+            if line.iter().any(|p| Some(p) != line.first()) {
+                continue;
+            }
+            points.extend_from_within(..);
         }
         if !text.is_empty() {
             text.push(b'\n');
@@ -191,7 +195,7 @@ fn ascii(text: Vec<u8>) -> String {
 }
 
 fn push_path(text: &mut Vec<u8>, points: &[[i64; 2]]) {
-    // There and back again is not closed: Z would draw the way back only once more.
+    // A line there and back is not closed: Z would draw the way back once more.
     let closed = points.len() > 3 && points.first() == points.last();
     let drawn = if closed { points.split_last().map_or(points, |(_, rest)| rest) } else { points };
     text.extend(b"<path d=\"");
@@ -219,13 +223,13 @@ fn push_point(text: &mut Vec<u8>, [x, y]: &[i64; 2], separator: u8) {
     push_thousandths(text, *y);
 }
 
-fn micrometres(p: DVec2) -> [i64; 2] {
+fn micrometers(p: DVec2) -> [i64; 2] {
     // `as` saturates; pages are at most 100 m, so nothing does.
     [(p.x * 1000.0).round() as i64, (p.y * 1000.0).round() as i64]
 }
 
-/// A length in millimetres with up to three decimals.
-fn millimetres(value: f64) -> String {
+/// A length in millimeters with up to three decimals.
+fn millimeters(value: f64) -> String {
     let mut text = Vec::new();
     push_thousandths(&mut text, (value * 1000.0).round() as i64);
     ascii(text)
@@ -290,7 +294,7 @@ mod tests {
             (297.0, "297"),
             (1000.25, "1000.25"),
         ] {
-            assert_eq!(millimetres(value), text);
+            assert_eq!(millimeters(value), text);
         }
     }
 }

@@ -263,7 +263,7 @@ impl SurfaceArgs {
             smoothness_mm: if lines.exact { 0.0 } else { lines.smoothness },
             underside: lines.underside,
             titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },
-            page: page.options(),
+            page: output.target.within_reach(page.options()),
             unit_mm: page.unit_mm(),
             pen_width_mm: page.pen_width_mm(),
             output,

@@ -25,4 +25,5 @@ mod surface;
 // Paper, pens and files.
 pub(crate) mod optimize;
 mod plotter_formats;
+mod read_back;
 mod writers;

@@ -1,6 +1,7 @@
 //! The program as users run it.
 
 mod cli;
+mod drawings;
 pub(crate) mod fill;
 mod hidden_levels;
 mod mistakes;

@@ -101,7 +101,7 @@ fn bad_drawings_are_refused_in_words_and_nothing_is_written() {
     for (content, message) in [
         ("<svg", "not a readable SVG"),
         ("<html/>", "not <svg>"),
-        ("<svg width='9' height='9'><path d='M0 0L9 nan' stroke='red'/></svg>", "line 1"),
+        ("<svg width='9' height='9'><line x2='nan' stroke='red'/></svg>", "line 1"),
         ("<svg width='0' height='9'/>", "no positive width"),
         (&laughs, "bad.svg: "),
     ] {
@@ -298,7 +298,7 @@ fn wire(n: &str) -> Option<Polylines> {
         return None;
     }
     let text = fs::read_to_string(file).unwrap();
-    let read = hiddenline::read_svg::read(&text, &hiddenline::read_svg::Options::default());
+    let read = hiddenline::read_svg::read(&text, &hiddenline::read_svg::SvgOptions::default());
     Some(read.unwrap().plot.layers.swap_remove(0).lines)
 }
 

@@ -7,6 +7,7 @@ mod formula;
 mod hostile;
 mod obj;
 mod svg;
+mod svg_shown;
 mod weld;
 
 use hiddenline::read::{Model, ReadError, read_bytes};
