@@ -79,8 +79,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.unit_mm = job.unit_mm;
     let stats = &mut run.stats;
     run.progress.stage("sampling");
-    let Sampled { surface, factor, camera, refined, deviation_mm } =
+    let Sampled { surface, factor, camera, refined, deviation_mm, warnings } =
         timed(&mut stats.seconds.read, || smoothness::sample(job))?;
+    run.notes.warnings.extend(warnings);
     if deviation_mm > job.smoothness_mm {
         run.notes.warnings.push(format!(
             "lines are up to {deviation_mm:.1} mm off the function, at kinks, jumps or where it \
@@ -260,21 +261,15 @@ fn lined(
     };
     let n_triangles = 2 * surface.lattices().iter().map(cells).sum::<u64>();
     too_many(n_triangles).map_or(Ok(()), Err)?;
-    let mut mesh = surface.lined(&lattice);
+    let heights = job.levels.as_ref().map(|levels| heights(levels, surface, factor));
+    let split_at = heights.as_deref().filter(|_| !job.lines.separate).unwrap_or_default();
+    let mut mesh = surface.lined(&lattice, split_at);
     if mesh.n_triangles() == 0 {
         return Err(NO_CELLS.into());
     }
-    if let Some(levels) = &job.levels {
-        let (low, high) = surface.bounds();
-        let n = |count: u16| f64::from(count) + 1.0;
-        let heights: Vec<f64> = match levels {
-            Levels::Count(count) => {
-                (1..=*count).map(|k| low.z + (high.z - low.z) * f64::from(k) / n(*count)).collect()
-            }
-            Levels::At(heights) => heights.iter().map(|z| z * factor).collect(),
-        };
-        too_many(mesh.n_pieces_with_levels(&heights)).map_or(Ok(()), Err)?;
-        mesh.add_levels(&heights);
+    if let Some(heights) = &heights {
+        too_many(mesh.n_pieces_with_levels(heights)).map_or(Ok(()), Err)?;
+        mesh.add_levels(heights);
     }
     let LinedScene { scene, lines } = mesh.into_scene()?;
     let scene = if job.intersections { scene.with_intersections() } else { scene };
@@ -312,6 +307,18 @@ fn draw_by_mesh(
             .into());
     }
     Ok(drawn.drawing)
+}
+
+/// The heights of level curves as they are drawn.
+fn heights(levels: &Levels, surface: &Surface, factor: f64) -> Vec<f64> {
+    let (low, high) = surface.bounds();
+    match levels {
+        Levels::Count(count) => {
+            let n = f64::from(*count) + 1.0;
+            (1..=*count).map(|k| low.z + (high.z - low.z) * f64::from(k) / n).collect()
+        }
+        Levels::At(heights) => heights.iter().map(|z| z * factor).collect(),
+    }
 }
 
 fn count(stats: &mut Stats, grid: &Grid, pieces: &GridPieces) {

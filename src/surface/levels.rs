@@ -13,7 +13,7 @@
 //! exactly.
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::lined_mesh::{LinedMesh, SurfaceLine};
 use crate::strokes::StrokeKind;
@@ -33,8 +33,11 @@ impl LinedMesh {
         self.triangles.iter().map(|corners| 1 + 2 * n_between(corners)).sum()
     }
 
-    /// Cuts all triangles at the given heights and draws lines of kind level there. An edge that
-    /// lies at a level is one, unless the faces beside it do, too. O(triangles + pieces).
+    /// Cuts all triangles at the given heights and draws lines of kind level there.
+    ///
+    /// A level curve is the border of what is as high as the level or higher: an edge at the level
+    /// is drawn where a face beside it lies below. A plateau is thus outlined once, along its lower
+    /// side. O(triangles + pieces).
     pub fn add_levels(&mut self, levels: &[f64]) {
         let levels = sorted(levels);
         let mut cutter = Cutter {
@@ -49,24 +52,27 @@ impl LinedMesh {
         for corners in &self.triangles {
             cutter.cut(*corners, &mut triangles, &mut curves);
         }
+        // A ridge at a level is found from both of its sides.
+        let mut seen = FxHashSet::default();
+        curves.retain(|ends| seen.insert(*ends));
         let mut lines = Vec::with_capacity(self.lines.len() + curves.len());
         for line in &self.lines {
             cutter.split(*line, &mut lines);
         }
         lines.extend(curves.into_iter().map(|ends| SurfaceLine { ends, kind: StrokeKind::Level }));
-        *self = Self { positions: cutter.positions, triangles, lines };
+        (self.positions, self.triangles, self.lines) = (cutter.positions, triangles, lines);
     }
 }
 
-/// Heights that are numbers, each once, the lowest first.
-fn sorted(levels: &[f64]) -> Vec<f64> {
+/// The finite heights in rising order, each once.
+pub(super) fn sorted(levels: &[f64]) -> Vec<f64> {
     let mut levels: Vec<f64> = levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
     levels.sort_by(f64::total_cmp);
     levels.dedup();
     levels
 }
 
-/// The numbers of the levels strictly between two heights.
+/// The indices of the levels strictly between two heights.
 fn between(levels: &[f64], low: f64, high: f64) -> std::ops::Range<usize> {
     let first = levels.partition_point(|z| *z <= low);
     first..levels.partition_point(|z| *z < high).max(first)
@@ -114,14 +120,13 @@ impl Cutter<'_> {
         let heights = corners.map(|v| self.z(v));
         let low = heights.into_iter().fold(f64::INFINITY, f64::min);
         let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        if low < high {
+        // Half-open: a vertex at the level counts as above it, so that a plateau is outlined along
+        // its lower side only, and a ridge at the level is one line.
+        if low < high && self.levels.binary_search_by(|l| l.total_cmp(&(high + 0.0))).is_ok() {
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
-                let z = self.z(a);
-                if z == self.z(b)
-                    && self.levels.binary_search_by(|l| l.total_cmp(&(z + 0.0))).is_ok()
-                {
-                    curves.push([a, b]);
+                if self.z(a) == high && self.z(b) == high {
+                    curves.push([a.min(b), a.max(b)]);
                 }
             }
         }

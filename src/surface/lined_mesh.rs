@@ -4,6 +4,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::Grid;
+use super::levels::sorted;
 use crate::classify::DrawnEdge;
 use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
 use crate::model::scene::Scene;
@@ -21,6 +22,8 @@ pub struct LinedMesh {
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) lines: Vec<SurfaceLine>,
+    /// Levels, in rising order, at which the cells of lattices are split.
+    pub(super) split_at: Vec<f64>,
 }
 
 /// A line between two vertices.
@@ -53,6 +56,22 @@ pub struct LinedScene {
 }
 
 impl LinedMesh {
+    /// An empty mesh for level curves: cells of lattices that one of the `levels` meets are cut into
+    /// four triangles about a point of their bilinear patch, its saddle or else its middle.
+    ///
+    /// ```text
+    ///   − ────── +        Either diagonal alone would join two corners that are on one side of the
+    ///   │ ╲    ╱ │        level, although x·y = 0 is a cross. The level curves of the four triangles
+    ///   │   ●    │        meet in the saddle as those of the patch do.
+    ///   │ ╱    ╲ │
+    ///   + ────── −        Not with `LatticeLines::triangles`, which draws the two triangles.
+    /// ```
+    ///
+    /// The curves themselves are drawn by [`add_levels`](Self::add_levels).
+    pub fn for_levels(levels: &[f64]) -> Self {
+        Self { split_at: sorted(levels), ..Self::default() }
+    }
+
     /// Adds the triangles and lines of a grid; the cells around a hole are left out.
     pub fn push_grid(&mut self, grid: &Grid, lines: &LatticeLines) {
         let points: Vec<DVec3> = (0..grid.zs().len() as u32).map(|k| grid.point(k)).collect();
@@ -62,6 +81,8 @@ impl LinedMesh {
     /// Adds a lattice of points in space, given row by row with `n_columns` in each; a point that
     /// is not finite is a hole. Cells are cut along (i,j)–(i+1,j+1). O(points).
     pub fn push_lattice(&mut self, n_columns: usize, points: &[DVec3], lines: &LatticeLines) {
+        // All edges of all triangles are to be those of the surface as it is drawn without levels.
+        let levels = if lines.triangles { Vec::new() } else { self.split_at.clone() };
         let base = self.positions.len();
         let n_rows = points.len() / n_columns.max(1);
         let is_hole = |k: usize| !points[k].is_finite();
@@ -72,6 +93,16 @@ impl LinedMesh {
             for i in 0..n_columns - 1 {
                 let k = j * n_columns + i;
                 let (right, above) = (k + 1, k + n_columns);
+                let corners = [k, right, above + 1, above];
+                if let Some(center) = split_point(corners.map(|k| points[k]), &levels) {
+                    self.positions.push(center);
+                    let center = (self.positions.len() - 1) as u32;
+                    for side in 0..4 {
+                        let [a, b] = [corners[side], corners[(side + 1) % 4]].map(id);
+                        self.push_triangle([a, b, center], false);
+                    }
+                    continue;
+                }
                 for corners in [[k, right, above + 1], [k, above + 1, above]] {
                     if !corners.into_iter().any(is_hole) {
                         self.push_triangle(corners.map(id), lines.triangles);
@@ -158,6 +189,30 @@ impl LinedMesh {
             .collect();
         Ok(LinedScene { scene, lines })
     }
+}
+
+/// The point about which a cell is split: that of the bilinear patch over its corners, given counter-
+/// clockwise, where it has its saddle if both ends of one diagonal are higher than both of the other,
+/// and in the middle otherwise. `None` if no level meets the cell or it has a hole.
+fn split_point([a, b, c, d]: [DVec3; 4], levels: &[f64]) -> Option<DVec3> {
+    if levels.is_empty() || ![a, b, c, d].iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    let low = a.z.min(b.z).min(c.z).min(d.z);
+    let high = a.z.max(b.z).max(c.z).max(d.z);
+    let first_above = levels.partition_point(|level| *level <= low);
+    if levels.get(first_above).is_none_or(|level| *level > high) {
+        return None;
+    }
+    let is_saddle = a.z.min(c.z) > b.z.max(d.z) || a.z.max(c.z) < b.z.min(d.z);
+    let (u, v) = if is_saddle {
+        let twist = (a.z - b.z) + (c.z - d.z);
+        ((a.z - d.z) / twist, (a.z - b.z) / twist)
+    } else {
+        (0.5, 0.5)
+    };
+    let patch = (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v;
+    (patch.is_finite() && (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then_some(patch)
 }
 
 /// Makes border points of a lattice that nearly coincide equal, within [`SEAM_TOLERANCE`].

@@ -2,21 +2,20 @@
 
 pub mod formula;
 
-mod csv;
+mod cells;
 mod domain;
 mod grid;
-mod height_files;
+mod heights;
 mod lattice_extent;
 mod levels;
 mod lined_mesh;
 #[cfg(feature = "points")]
 mod points;
 
-pub use csv::{CsvError, Placement, read_csv};
 pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
-pub use height_files::{HeightFileError, read_heights};
+pub use heights::{HeightError, HeightField, HeightNote, HeightOptions, read_heights};
 pub use lattice_extent::lattice_extent;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
 #[cfg(feature = "points")]
-pub use points::{PointsError, delaunay, read_points};
+pub use points::{Duplicates, PointsError, ScatteredPoints, delaunay};

@@ -4,6 +4,35 @@ use glam::DVec3;
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use thiserror::Error;
 
+use super::cells::{Cell, Numbers, Separator, lines};
+
+/// Points that were read from a text.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ScatteredPoints {
+    /// In the order of the file.
+    pub points: Vec<DVec3>,
+    /// The line of each point, counted from 1.
+    pub lines: Vec<usize>,
+    /// How many lines before the first point hold words.
+    pub n_titles: usize,
+    /// How many points were left out because their z is missing.
+    pub n_without_height: usize,
+}
+
+/// What becomes of points with the same x and y but different heights.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Duplicates {
+    /// They are an error.
+    #[default]
+    Error,
+    /// The first one counts.
+    First,
+    /// One point with their mean height counts.
+    Mean,
+    /// The highest one counts.
+    Max,
+}
+
 /// Why a text of points makes no surface.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PointsError {
@@ -13,13 +42,26 @@ pub enum PointsError {
         /// Counted from 1.
         line: usize,
     },
+    /// Decimal points and decimal commas in one file.
+    #[error("line {line}: decimal points and decimal commas are mixed")]
+    MixedDecimals {
+        /// Counted from 1.
+        line: usize,
+    },
     /// Two heights for one place.
-    #[error("two points at x = {x}, y = {y} have different heights")]
+    #[error(
+        "points {} and {} are both at x = {x}, y = {y}, with heights {} and {}",
+        points[0] + 1, points[1] + 1, heights[0], heights[1]
+    )]
     TwoHeights {
+        /// The indices of the two points, the smaller first.
+        points: [usize; 2],
         /// Of both.
         x: f64,
         /// Of both.
         y: f64,
+        /// Of each.
+        heights: [f64; 2],
     },
     /// Too few points, or all on one line.
     #[error("{found} points make no triangle: at least 3 are needed that are not on one line")]
@@ -32,31 +74,112 @@ pub enum PointsError {
     Range,
 }
 
-/// Reads points, one a line: x, y and z with comma, semicolon, tab or blanks between them. What
-/// follows them on a line is passed over, as are lines that begin with `#` and one line of titles.
-///
-/// # Errors
-/// The first line that is no point.
-pub fn read_points(text: &str) -> Result<Vec<DVec3>, PointsError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut points = Vec::new();
-    let mut is_first = true;
-    for (k, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
+impl ScatteredPoints {
+    /// Reads points, one a line: x, y and z with comma, semicolon, tab or blanks between them. More
+    /// cells on a line are ignored, as are comments and titles. O(bytes).
+    ///
+    /// A point whose z is missing, `nan` or `nodata` is left out.
+    ///
+    /// # Errors
+    /// The first line that is not a point.
+    pub fn read(text: &str, nodata: Option<f64>) -> Result<Self, PointsError> {
+        let mut read = Self::default();
+        let (mut numbers, mut known) = (Numbers::default(), None);
+        for (line, text) in lines(text) {
+            let separator = known.unwrap_or_else(|| Separator::of(text));
+            // Numbers in titles do not decide between decimal points and commas.
+            let mut trial = numbers;
+            let mut cells = separator.cells(text).map(|cell| trial.read(cell));
+            let mut next = || {
+                let cell = cells.next().unwrap_or(Ok(Cell::Word));
+                cell.map_err(|_| PointsError::MixedDecimals { line })
+            };
+            match (next()?, next()?, next()?) {
+                (Cell::Number(x), Cell::Number(y), z) if x.is_finite() && y.is_finite() => {
+                    match z {
+                        Cell::Number(z) if z.is_finite() && nodata != Some(z) => {
+                            read.points.push(DVec3::new(x, y, z));
+                            read.lines.push(line);
+                        }
+                        Cell::Number(_) | Cell::Missing => read.n_without_height += 1,
+                        Cell::Word => return Err(PointsError::NotAPoint { line }),
+                    }
+                }
+                (Cell::Word, ..) if read.points.is_empty() && read.n_without_height == 0 => {
+                    read.n_titles += 1;
+                    continue;
+                }
+                _ => return Err(PointsError::NotAPoint { line }),
+            }
+            (known, numbers) = (Some(separator), trial);
         }
-        let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty());
-        let mut numbers = cells.map(|cell| fast_float2::parse::<f64, _>(cell).ok());
-        let mut next = || numbers.next().flatten().filter(|number| number.is_finite());
-        match (next(), next(), next()) {
-            (Some(x), Some(y), Some(z)) => points.push(DVec3::new(x, y, z)),
-            _ if is_first => {}
-            _ => return Err(PointsError::NotAPoint { line: k + 1 }),
-        }
-        is_first = false;
+        Ok(read)
     }
-    Ok(points)
+
+    /// Leaves one point at each place and says how many were taken away. Equal points are never an
+    /// error. O(n log n).
+    ///
+    /// # Errors
+    /// With [`Duplicates::Error`], the first point in the file that has another height than an
+    /// earlier one at its place.
+    pub fn merge(&mut self, duplicates: Duplicates) -> Result<usize, PointsError> {
+        let order = by_place(&self.points);
+        let same = |a: &usize, b: &usize| is_same_place(self.points[*a], self.points[*b]);
+        let places: Vec<&[usize]> = order.chunk_by(same).filter(|place| place.len() > 1).collect();
+        if duplicates == Duplicates::Error
+            && let Some(clash) = clash(&self.points, places.iter().copied())
+        {
+            return Err(clash);
+        }
+        let mut heights: Vec<(usize, f64)> = Vec::with_capacity(places.len());
+        let mut is_kept = vec![true; self.points.len()];
+        for place in places {
+            let zs = || place.iter().map(|&k| self.points[k].z);
+            let z = match duplicates {
+                Duplicates::Error | Duplicates::First => self.points[place[0]].z,
+                // Parts first: the sum of two finite heights may overflow.
+                Duplicates::Mean => zs().map(|z| z / place.len() as f64).sum(),
+                Duplicates::Max => zs().fold(f64::NEG_INFINITY, f64::max),
+            };
+            heights.push((place[0], z));
+            place[1..].iter().for_each(|&k| is_kept[k] = false);
+        }
+        heights.into_iter().for_each(|(k, z)| self.points[k].z = z);
+        let before = self.points.len();
+        let mut kept = is_kept.iter();
+        self.points.retain(|_| kept.next() == Some(&true));
+        let mut kept = is_kept.iter();
+        self.lines.retain(|_| kept.next() == Some(&true));
+        Ok(before - self.points.len())
+    }
+}
+
+/// The indices of the points, those at one place beside each other in their order.
+fn by_place(points: &[DVec3]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    // −0 and 0 are one place.
+    let key = |k: usize| (points[k].x + 0.0, points[k].y + 0.0);
+    order.sort_by(|&a, &b| {
+        let ((ax, ay), (bx, by)) = (key(a), key(b));
+        ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(a.cmp(&b))
+    });
+    order
+}
+
+fn is_same_place(a: DVec3, b: DVec3) -> bool {
+    a.x == b.x && a.y == b.y
+}
+
+/// The first point that has another height than an earlier one at its place.
+fn clash<'a>(points: &[DVec3], places: impl Iterator<Item = &'a [usize]>) -> Option<PointsError> {
+    let clashes = places.filter_map(|place| {
+        let first = points[place[0]].z;
+        place.iter().find(|&&k| points[k].z != first).map(|&k| [place[0], k])
+    });
+    clashes.min_by_key(|pair| pair[1]).map(|pair| {
+        let [a, b] = pair.map(|k| points[k]);
+        PointsError::TwoHeights { points: pair, x: a.x, y: a.y, heights: [a.z, b.z] }
+    })
 }
 
 /// A point with its number.
@@ -73,7 +196,7 @@ impl HasPosition for Site {
     }
 }
 
-/// The Delaunay triangles of the points' x and y, counter-clockwise from above, by their numbers.
+/// The Delaunay triangles of the points' x and y, counter-clockwise from above, as indices.
 ///
 /// Decided exactly; of cocircular points the triangulation is one of the possible ones. Equal
 /// points count once. Expected O(n log n).
@@ -89,15 +212,10 @@ pub fn delaunay(points: &[DVec3]) -> Result<Vec<[u32; 3]>, PointsError> {
     let triangulation = DelaunayTriangulation::<Site>::bulk_load(sites.collect())
         .map_err(|_| PointsError::Range)?;
     if triangulation.num_vertices() < points.len() {
-        let mut order: Vec<&DVec3> = points.iter().collect();
-        order.sort_by(|a, b| {
-            (a.x + 0.0).total_cmp(&(b.x + 0.0)).then((a.y + 0.0).total_cmp(&(b.y + 0.0)))
-        });
-        let clash = order.windows(2).find(|pair| {
-            pair[0].x == pair[1].x && pair[0].y == pair[1].y && pair[0].z != pair[1].z
-        });
-        if let Some(pair) = clash {
-            return Err(PointsError::TwoHeights { x: pair[0].x, y: pair[0].y });
+        let order = by_place(points);
+        let same = |a: &usize, b: &usize| is_same_place(points[*a], points[*b]);
+        if let Some(clash) = clash(points, order.chunk_by(same)) {
+            return Err(clash);
         }
     }
     let triangles: Vec<[u32; 3]> = triangulation

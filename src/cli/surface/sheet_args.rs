@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{MAX_SAMPLES, Placement};
+use hiddenline::surface::{Duplicates, HeightOptions, MAX_SAMPLES};
 
 use super::sheets::{Aspect, Input, Sheets};
 use crate::cli::formulas::in_formula;
@@ -20,7 +20,7 @@ pub(in crate::cli) const DEFAULT_SAMPLES: usize = 81;
 pub(in crate::cli) struct SheetArgs {
     /// Heights from a file; `-` is standard input
     ///
-    /// Rows of numbers, ESRI ASCII grid, NPY, or a gray PNG or TIFF, by the file's content.
+    /// Rows of numbers, ESRI ASCII grid, NPY, NPZ, or a gray PNG or TIFF, recognized by content.
     #[arg(long, value_name = "FILE", conflicts_with = "expression")]
     grid: Option<PathBuf>,
     /// Scattered points from a file with x, y and z on each line; `-` is standard input
@@ -55,8 +55,16 @@ pub(in crate::cli) struct SheetArgs {
     #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
     samples: Option<(usize, usize)>,
     /// The first row of the file is the one with the largest y
-    #[arg(long, requires = "grid")]
+    #[arg(long, requires = "grid", conflicts_with_all = ["expression", "points", "parametric"])]
     flip_y: bool,
+    /// This height in the file means no data; such samples are holes, such points are left out
+    #[arg(long, value_name = "HEIGHT", value_parser = values::number, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["expression", "parametric"])]
+    nodata: Option<f64>,
+    /// Which of several points with the same x and y is kept [default: error]
+    #[arg(long, value_enum, requires = "points")]
+    #[arg(conflicts_with_all = ["expression", "grid", "parametric"])]
+    duplicates: Option<DuplicatesName>,
     /// Factor for all heights
     #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(default_value_t = 1.0)]
@@ -67,6 +75,29 @@ pub(in crate::cli) struct SheetArgs {
     /// side of its base, then by --z-scale. The default is box, but data with --parametric.
     #[arg(long, value_enum)]
     aspect: Option<Aspect>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub(in crate::cli) enum DuplicatesName {
+    /// The first one in the file
+    First,
+    /// One with their mean height
+    Mean,
+    /// The highest one
+    Max,
+    /// None: different heights at one place are an error
+    Error,
+}
+
+impl DuplicatesName {
+    fn library(self) -> Duplicates {
+        match self {
+            Self::First => Duplicates::First,
+            Self::Mean => Duplicates::Mean,
+            Self::Max => Duplicates::Max,
+            Self::Error => Duplicates::Error,
+        }
+    }
 }
 
 impl SheetArgs {
@@ -97,6 +128,9 @@ impl SheetArgs {
             Input::Formulas { texts, formulas, domain: domain.transpose()?, samples }
         } else {
             let is_given = self.x.is_some() || self.y.is_some() || self.samples.is_some();
+            if self.nodata.is_some() {
+                return Err("--nodata is for --grid and --points".into());
+            }
             if is_given || self.aspect.is_some() || self.z_scale != 1.0 {
                 return Err("--x, --y, --samples, --z-scale and --aspect are for surfaces: give \
                             --expr, --grid, --points or --parametric"
@@ -106,7 +140,13 @@ impl SheetArgs {
         };
         Ok(Some(Sheets {
             input,
-            placement: Placement { x: self.x, y: self.y, flip_y: self.flip_y },
+            options: HeightOptions {
+                x: self.x,
+                y: self.y,
+                flip_y: self.flip_y,
+                nodata: self.nodata,
+            },
+            duplicates: self.duplicates.map_or(Duplicates::Error, DuplicatesName::library),
             z_scale: self.z_scale,
             aspect: self.aspect.unwrap_or(default_aspect),
         }))

@@ -10,12 +10,14 @@ use hiddenline::extent::Extent;
 use hiddenline::model::mesh::Mesh;
 use hiddenline::surface::formula::{Formula, Variables};
 use hiddenline::surface::{
-    Grid, Holes, LatticeLines, LinedMesh, MAX_SAMPLES, Placement, TrimmedGrid, close_seams,
-    delaunay, evenly, lattice_extent, read_heights, read_points,
+    Duplicates, Grid, HeightField, HeightNote, HeightOptions, Holes, LatticeLines, LinedMesh,
+    MAX_SAMPLES, PointsError, ScatteredPoints, TrimmedGrid, close_seams, delaunay, evenly,
+    lattice_extent, read_heights,
 };
 
 use hiddenline::camera::Camera;
 
+use crate::cli::messages::counted;
 use crate::cli::paper::Notes;
 use crate::cli::paths;
 
@@ -62,7 +64,8 @@ pub(in crate::cli) enum Aspect {
 /// A surface as it is asked for.
 pub(in crate::cli) struct Sheets {
     pub(super) input: Input,
-    pub(super) placement: Placement,
+    pub(super) options: HeightOptions,
+    pub(super) duplicates: Duplicates,
     pub(super) z_scale: f64,
     pub(super) aspect: Aspect,
 }
@@ -151,9 +154,9 @@ impl Surface {
     }
 
     /// Its triangles, with these lines of lattices; scattered points have lines along all edges if
-    /// triangles are to have them.
-    pub(super) fn lined(&self, lines: &LatticeLines) -> LinedMesh {
-        let mut mesh = LinedMesh::default();
+    /// triangles are to have them. Cells that one of the levels `split_at` meets are split.
+    pub(super) fn lined(&self, lines: &LatticeLines, split_at: &[f64]) -> LinedMesh {
+        let mut mesh = LinedMesh::for_levels(split_at);
         match self {
             Self::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, lines)),
             Self::Trimmed { grids, .. } => {
@@ -240,10 +243,50 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
+/// A note about a height file, with what can be done.
+fn noted(path: &Path, note: &HeightNote) -> String {
+    let path = path.display();
+    match note {
+        HeightNote::LooksLikePoints { .. } => {
+            format!("{path}: {note}; if so, give --points {path} instead of --grid {path}")
+        }
+        _ => format!("{path}: {note}"),
+    }
+}
+
+/// The same for scattered points; `None` if none was left out.
+fn omitted(path: &Path, read: &ScatteredPoints, n_merged: usize) -> Option<String> {
+    let parts =
+        [(n_merged, "at the place of another"), (read.n_without_height, "without a height")];
+    let parts = parts.iter().filter(|(n, _)| *n > 0);
+    let parts: Vec<String> =
+        parts.map(|(n, which)| format!("{} {which}", counted(*n, "point", "points"))).collect();
+    (!parts.is_empty()).then(|| format!("{}: left out {}", path.display(), parts.join(" and ")))
+}
+
+/// An error about points that names their lines.
+fn with_lines(path: &Path, error: &PointsError, lines: &[usize]) -> String {
+    let path = path.display();
+    match error {
+        PointsError::TwoHeights { points, x, y, heights: [a, b] } => {
+            let [first, second] = points.map(|k| lines.get(k).copied().unwrap_or(0));
+            format!(
+                "{path}:{first} and {path}:{second} are both at x = {x}, y = {y}, with heights {a} \
+                 and {b}; give --duplicates first, mean or max to keep one of them"
+            )
+        }
+        _ => format!("{path}: {error}"),
+    }
+}
+
 impl Sheets {
     /// The surface with `refined` times as many cells along both axes as asked for, if it is given by
-    /// formulas, and the factor that its heights were multiplied by.
-    pub(super) fn read(&self, refined: usize) -> Result<(Surface, f64), Box<dyn Error>> {
+    /// formulas, and the factor that its heights were multiplied by. Warnings are added to `warnings`.
+    pub(super) fn read(
+        &self,
+        refined: usize,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Surface, f64), Box<dyn Error>> {
         let finely = |(u, v): (usize, usize)| {
             let finer = |n: usize| (n - 1).saturating_mul(refined).saturating_add(1);
             (finer(u), finer(v))
@@ -252,8 +295,8 @@ impl Sheets {
         let mut surface = match &self.input {
             Input::Formulas { formulas, domain, samples, .. } => {
                 let samples = finely(*samples);
-                let x = self.placement.x.unwrap_or(DEFAULT_RANGE);
-                let y = self.placement.y.unwrap_or(DEFAULT_RANGE);
+                let x = self.options.x.unwrap_or(DEFAULT_RANGE);
+                let y = self.options.y.unwrap_or(DEFAULT_RANGE);
                 let formulas = formulas.iter();
                 match domain {
                     None => {
@@ -291,13 +334,20 @@ impl Sheets {
             }
             Input::File(path) => {
                 let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
-                let grid = read_heights(&bytes, self.placement);
-                Surface::Grids(vec![grid.map_err(|error| failed(path, &error))?])
+                let field = read_heights(&bytes, &self.options);
+                let HeightField { grid, notes } = field.map_err(|error| failed(path, &error))?;
+                warnings.extend(notes.iter().map(|note| noted(path, note)));
+                Surface::Grids(vec![grid])
             }
             Input::Points(path) => {
                 let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
-                let points = read_points(&String::from_utf8_lossy(&bytes));
-                let points = points.map_err(|error| failed(path, &error))?;
+                let text = String::from_utf8_lossy(&bytes);
+                let read = ScatteredPoints::read(&text, self.options.nodata);
+                let mut read = read.map_err(|error| failed(path, &error))?;
+                let merged = read.merge(self.duplicates);
+                let n_merged = merged.map_err(|error| with_lines(path, &error, &read.lines))?;
+                warnings.extend(omitted(path, &read, n_merged));
+                let points = read.points;
                 let triangles = delaunay(&points).map_err(|error| failed(path, &error))?;
                 Surface::Points { points, triangles }
             }
@@ -357,8 +407,8 @@ impl Sheets {
         let range = |(from, to): (f64, f64)| format!("{from}:{to}");
         match &self.input {
             Input::Formulas { texts, formulas, domain, samples } => {
-                let x = self.placement.x.unwrap_or(DEFAULT_RANGE);
-                let y = self.placement.y.unwrap_or(DEFAULT_RANGE);
+                let x = self.options.x.unwrap_or(DEFAULT_RANGE);
+                let y = self.options.y.unwrap_or(DEFAULT_RANGE);
                 let has_value = |formula| {
                     Grid::sample(formula, x, y, *samples).is_ok_and(|grid| grid.heights().is_some())
                 };
@@ -403,15 +453,16 @@ impl Sheets {
 
     /// The surface as a mesh, sampled as asked for.
     pub(in crate::cli) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
-        let (surface, _) = self.read(1)?;
+        let mut warnings = Vec::new();
+        let (surface, _) = self.read(1, &mut warnings)?;
         let no_lines =
             LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
-        let mesh = surface.lined(&no_lines).into_mesh()?;
+        let mesh = surface.lined(&no_lines, &[]).into_mesh()?;
         if mesh.n_faces() == 0 {
             return Err(NO_CELLS.into());
         }
         let summary = format!("{}: {}", self.title(), surface.described());
-        let warnings = surface.note().into_iter().collect();
+        warnings.extend(surface.note());
         Ok((mesh, Notes { summary, warnings }))
     }
 }

@@ -40,6 +40,8 @@ pub(super) struct Sampled {
     /// How far lines are from the function at most, in millimeters on paper; 0 when they may be as
     /// far as they are.
     pub(super) deviation_mm: f64,
+    /// What reading has to tell.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Samples the surface, more finely where its lines would deviate from the function by more than
@@ -47,13 +49,14 @@ pub(super) struct Sampled {
 pub(super) fn sample(job: &Job) -> Result<Sampled, Box<dyn Error>> {
     let mut refined = 1;
     loop {
-        let (surface, factor) = job.sheets.read(refined)?;
+        let mut warnings = Vec::new();
+        let (surface, factor) = job.sheets.read(refined, &mut warnings)?;
         let camera = job.view.camera(surface.bounds())?;
         let deviation_mm =
             if is_refinable(job) { deviation_mm(job, &surface, &camera) } else { 0.0 };
         let finer = finer(job, &surface, &camera, refined, deviation_mm);
         if finer <= refined {
-            return Ok(Sampled { surface, factor, camera, refined, deviation_mm });
+            return Ok(Sampled { surface, factor, camera, refined, deviation_mm, warnings });
         }
         refined = finer;
     }

@@ -230,13 +230,16 @@ fn bad_input_is_told_in_one_line() {
         (b"\x89PNG\r\n\x1a\n", "PNG: "),
         (b"II*\0\xff\xff\xff\xff", "TIFF: "),
         (b"ncols 2\nnrows 2\ncellsize 1\n1 2 3\n", "3 heights for 2 × 2 cells"),
-        (b"\xff\xfe\x00", "not a text of numbers"),
+        (b"\xff\xfe\x00", "not rows of numbers"),
     ] {
         fails(&with_file(content), &["--grid", "heights"], 1, message);
     }
     for (content, message) in [
         ("0 0 1\n1 1 1\n2 2 1\n", "3 points make no triangle"),
-        ("0 0 1\n0 0 2\n1 1 1\n2 5 1\n", "two points at x = 0, y = 0"),
+        (
+            "0 0 1\n0 0 2\n1 1 1\n2 5 1\n",
+            "heights:1 and heights:2 are both at x = 0, y = 0, with heights 1 and 2; give --duplicates",
+        ),
         ("0 0 1\n0 x 2\n", "line 2: expected the three numbers"),
     ] {
         fails(&with_file(content), &["--points", "heights"], 1, message);
@@ -433,4 +436,62 @@ fn a_sphere_of_two_sheets_is_drawn_by_max_min_as_by_roberts() {
     };
     assert!(refuses(&sheets, &["--eye", "0.1,0,0.2"]));
     assert!(refuses(&["sqrt(1-r^2)+1", "(-sqrt(1-r^2))", "--where", "r<=1"], &["--eye", "4,-3,2"]));
+}
+
+/// The ink of a drawing, in millimeters.
+fn ink_mm(folder: &TempDir, arguments: &[&str]) -> f64 {
+    let output = run(folder, &[arguments, &["--no-axes", "--stats", "-o", "out.svg"]].concat());
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    let stats: Value = serde_json::from_str(stderr.lines().last().expect("a line")).expect("JSON");
+    stats["plot"]["after"]["down_m"].as_f64().expect("a number") * 1000.0
+}
+
+#[test]
+fn the_zero_curve_of_a_saddle_is_a_cross() {
+    let folder = with_file("");
+    let lines = ["--lines", "levels", "--levels", "0,", "--view", "top"];
+    for samples in ["40", "41", "40x80", "7x41"] {
+        let cross = [&["x*y"][..], &lines, &["--samples", samples]].concat();
+        let found = ink_mm(&folder, &cross);
+        assert!((found - 380.0).abs() < 0.05, "{samples}: {found}");
+    }
+    // A plateau of whole numbers is outlined once: around 4 × 2 cells, 277 mm wide on A4.
+    let zeros = "0 0 0 0 0 0 0 0\n";
+    let ones = "0 1 1 1 1 1 0 0\n";
+    let folder = with_file([zeros, ones, ones, ones, zeros].concat());
+    let levels = ["--grid", "heights", "--lines", "levels", "--levels", "1,", "--view", "top"];
+    let found = ink_mm(&folder, &levels);
+    assert!((found - 12.0 * 277.0 / 4.0).abs() < 0.05, "{found}");
+}
+
+#[test]
+fn height_files_tell_what_is_odd_about_them() {
+    let warned = |content: &str, arguments: &[&str], message: &str| {
+        let folder = with_file(content);
+        let output = run(&folder, &[arguments, &["-o", "out.svg"]].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {stderr}");
+        assert!(stderr.contains(message), "{arguments:?}: {stderr}");
+    };
+    let grid = ["--grid", "heights"];
+    let list: String = (0..20).map(|k| format!("{} {} {}\n", k % 5, k / 5, k * k % 7)).collect();
+    warned(&list, &grid, "if so, give --points heights instead of --grid heights");
+    warned("some words\n1 2\n3 4\n", &grid, "1 line before the first row of numbers was skipped");
+    let points = "0 0 1\n2 0 1\n0 0 3\n0 2 -\n0 2 1\n";
+    let arguments = |duplicates| ["--points", "heights", "--duplicates", duplicates];
+    let message = "left out 1 point at the place of another and 1 point without a height";
+    for duplicates in ["first", "mean", "max"] {
+        warned(points, &arguments(duplicates), message);
+    }
+    let clash = "heights:1 and heights:3 are both at x = 0, y = 0, with heights 1 and 3";
+    fails(&with_file(points), &arguments("error"), 1, clash);
+    fails(&with_file(""), &["x", "--nodata", "1"], 2, "--nodata");
+    fails(&with_file(""), &["x", "--duplicates", "max"], 2, "--duplicates");
+    fails(&with_file(""), &["x", "--flip-y"], 2, "--flip-y");
+    // A pit that is no pit.
+    let pit = "1 2 3\n4 -99 6\n7 8 9\n0 0 0\n1 1 1\n";
+    let (with, _) = drawn(&with_file(pit), &["--grid", "heights", "--nodata=-99", "--exact"]);
+    let (without, _) = drawn(&with_file(pit), &["--grid", "heights", "--exact"]);
+    assert!(with.len() < without.len());
 }

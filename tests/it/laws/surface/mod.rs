@@ -2,7 +2,10 @@
 
 mod brute;
 mod floating_horizon;
+mod height_files;
+mod level_lengths;
 mod max_min;
 mod meshed;
 mod pen_path;
+mod points;
 mod tin;

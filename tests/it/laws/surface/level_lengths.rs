@@ -1,0 +1,154 @@
+//! Level curves in the plane against closed forms: the half-open rule and saddles.
+
+use std::collections::BTreeSet;
+
+use hiddenline::strokes::StrokeKind;
+use hiddenline::surface::formula::{Formula, Variables};
+use hiddenline::surface::{
+    Grid, HeightOptions, LatticeLines, LinedMesh, TrimmedGrid, read_heights,
+};
+
+const NO_LINES: LatticeLines =
+    LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
+
+/// The ends of the pieces of the level curves in the plane.
+fn pieces(grid: &Grid, levels: &[f64]) -> Vec<[f64; 4]> {
+    let mut mesh = LinedMesh::for_levels(levels);
+    mesh.push_grid(grid, &NO_LINES);
+    mesh.add_levels(levels);
+    let scene = mesh.into_scene().expect("a scene");
+    let mesh = scene.scene.mesh();
+    let ends = |edge: u32| {
+        let [a, b] = scene.scene.topology().edge(edge);
+        [a, b].map(|v| mesh.positions()[v as usize])
+    };
+    let pieces: Vec<[f64; 4]> =
+        scene.lines.iter().map(|line| ends(line.edge)).map(|[a, b]| [a.x, a.y, b.x, b.y]).collect();
+    let unique: BTreeSet<[u64; 4]> = pieces.iter().map(|p| p.map(f64::to_bits)).collect();
+    assert_eq!(unique.len(), pieces.len(), "no piece is drawn twice");
+    pieces
+}
+
+fn length(pieces: &[[f64; 4]]) -> f64 {
+    pieces.iter().map(|[ax, ay, bx, by]| (ax - bx).hypot(ay - by)).sum()
+}
+
+fn sampled(text: &str, n: usize) -> Grid {
+    let formula = Formula::parse(text, Variables::Plane).expect("a formula");
+    Grid::sample(&formula, (-5.0, 5.0), (-5.0, 5.0), (n, n)).expect("a grid")
+}
+
+#[test]
+fn curves_of_saddles_and_kinks_have_their_lengths() {
+    for (text, level, expected) in [
+        ("x*y", 0.0, 20.0),
+        ("-x*y", 0.0, 20.0),
+        ("x*y + 4", 4.0, 20.0),
+        ("min(x, 0)", 0.0, 10.0),
+        ("min(y, 0)", 0.0, 10.0),
+        ("max(x, 0)", 0.0, 0.0),
+        ("-abs(x)", 0.0, 10.0),
+        ("x + y", 0.0, 200f64.sqrt()),
+        ("x - y", 0.0, 200f64.sqrt()),
+        ("x", 5.0, 10.0),
+        ("x", -5.0, 0.0),
+    ] {
+        for n in [80, 81, 41] {
+            if text == "-abs(x)" && n == 80 {
+                // Without samples at x = 0 nothing is as high as 0.
+                continue;
+            }
+            let found = length(&pieces(&sampled(text, n), &[level]));
+            assert!((found - expected).abs() < 1e-9, "{text}, {n} samples: {found}");
+        }
+    }
+    let found = length(&pieces(&sampled("x^2 - y^2", 81), &[0.0]));
+    assert!((found - 2.0 * 200f64.sqrt()).abs() < 1e-9, "{found}");
+}
+
+#[test]
+fn a_level_through_a_vertex_is_drawn_through_it() {
+    // Of the plane z = x − 2y every second curve runs through corners of cells, between them.
+    let found = pieces(&sampled("x - 2*y", 11), &[0.0]);
+    assert!((length(&found) - 125f64.sqrt()).abs() < 1e-12, "{found:?}");
+    let through_origin =
+        |[ax, ay, bx, by]: &&[f64; 4]| (*ax, *ay) == (0.0, 0.0) || (*bx, *by) == (0.0, 0.0);
+    assert_eq!(found.iter().filter(through_origin).count(), 2);
+    for [ax, ay, bx, by] in found {
+        assert!((ax - 2.0 * ay).abs() < 1e-12 && (bx - 2.0 * by).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_plateau_is_outlined_once_on_its_lower_side() {
+    let read =
+        |text: &str| read_heights(text.as_bytes(), &HeightOptions::default()).expect("a grid").grid;
+    // A mesa of height 1 whose top has 3 × 2 samples, and a basin of the same size.
+    let mesa = read("0 0 0 0 0\n0 1 1 1 0\n0 1 1 1 0\n0 0 0 0 0\n");
+    assert_eq!(length(&pieces(&mesa, &[1.0])), 6.0);
+    // The outline of z ≥ 0 is the border of the grid, which is no curve.
+    assert_eq!(length(&pieces(&mesa, &[0.0])), 0.0);
+    let basin = read("1 1 1 1 1\n1 0 0 0 1\n1 0 0 0 1\n1 1 1 1 1\n");
+    assert_eq!(length(&pieces(&basin, &[1.0])), 14.0);
+    assert_eq!(length(&pieces(&basin, &[0.0])), 0.0);
+    // A single peak or pit at the level is a point.
+    assert_eq!(length(&pieces(&read("0 0 0\n0 1 0\n0 0 0\n"), &[1.0])), 0.0);
+    assert_eq!(length(&pieces(&read("1 1 1\n1 0 1\n1 1 1\n"), &[0.0])), 0.0);
+}
+
+#[test]
+fn every_k_th_line_and_the_last_one_are_drawn() {
+    let grid =
+        Grid::new((0..6).map(f64::from).collect(), (0..5).map(f64::from).collect(), vec![0.0; 30]);
+    let grid = grid.expect("a grid");
+    for (every, columns, rows) in [
+        (1, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0][..], &[0.0, 1.0, 2.0, 3.0, 4.0][..]),
+        (2, &[0.0, 2.0, 4.0, 5.0], &[0.0, 2.0, 4.0]),
+        (3, &[0.0, 3.0, 5.0], &[0.0, 3.0, 4.0]),
+        (9, &[0.0, 5.0], &[0.0, 4.0]),
+    ] {
+        let drawn = |along_rows: bool| -> Vec<f64> {
+            let lines = LatticeLines { along_rows, along_columns: !along_rows, every, ..NO_LINES };
+            let mut mesh = LinedMesh::default();
+            mesh.push_grid(&grid, &lines);
+            let scene = mesh.into_scene().expect("a scene");
+            let at = |edge: u32| {
+                let [a, _] = scene.scene.topology().edge(edge);
+                let p = scene.scene.mesh().positions()[a as usize];
+                if along_rows { p.y } else { p.x }
+            };
+            let mut places: Vec<f64> = scene.lines.iter().map(|line| at(line.edge)).collect();
+            places.sort_by(f64::total_cmp);
+            places.dedup();
+            places
+        };
+        assert_eq!((&drawn(false)[..], &drawn(true)[..]), (columns, rows), "every {every}");
+    }
+}
+
+#[test]
+fn the_last_line_of_every_k_reaches_the_rim_of_a_domain() {
+    let formula = |text: &str| Formula::parse(text, Variables::Plane).expect("a formula");
+    // Rows and columns are cut at 0.25 beyond a sample.
+    for (domain, along_rows, expected) in
+        [("x <= 2.25", true, [0.0, 3.0, 4.0]), ("y <= 2.25", false, [0.0, 3.0, 5.0])]
+    {
+        let grid =
+            TrimmedGrid::sample(&formula("0"), &formula(domain), (0.0, 5.0), (0.0, 4.0), (6, 5));
+        let lines = LatticeLines { along_rows, along_columns: !along_rows, every: 3, ..NO_LINES };
+        let mut mesh = LinedMesh::default();
+        mesh.push_trimmed(&grid.expect("a grid"), &lines);
+        let scene = mesh.into_scene().expect("a scene");
+        let mut places: Vec<f64> = Vec::new();
+        for line in scene.lines.iter().filter(|line| line.kind == StrokeKind::Grid) {
+            let ends = scene.scene.topology().edge(line.edge);
+            let ends = ends.map(|v| scene.scene.mesh().positions()[v as usize]);
+            let (along, across) = if along_rows { (0, 1) } else { (1, 0) };
+            if ends.iter().any(|p| (p[along] - 2.25).abs() < 1e-9) {
+                places.push(ends[0][across]);
+            }
+        }
+        places.sort_by(f64::total_cmp);
+        assert_eq!(places, expected, "{domain}");
+    }
+}
