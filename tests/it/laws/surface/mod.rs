@@ -1,6 +1,7 @@
 //! Function surfaces: engines against brute force and closed forms.
 
 mod brute;
+mod damage;
 mod floating_horizon;
 mod height_files;
 mod level_lengths;
