@@ -133,6 +133,11 @@ pub enum FramingError {
     /// An angle is not finite.
     #[error("azimuth and elevation must be finite")]
     Angle,
+    /// The scene is too large to be seen whole from a point with finite coordinates.
+    #[error(
+        "coordinates of {0:e} are too large to find a camera that shows the whole scene; scale it down"
+    )]
+    TooLarge(f64),
     /// The numbers make no camera.
     #[error(transparent)]
     Camera(#[from] CameraError),
@@ -194,7 +199,7 @@ impl Framing {
         let distance = match distance {
             Some(distance) if distance > 0.0 && distance.is_finite() => distance,
             Some(distance) => return Err(FramingError::Distance(distance)),
-            None => self.distance_that_shows(bounds, target),
+            None => self.distance_that_shows(bounds, target)?,
         };
         let size = distance.max(target.abs().max_element());
         let offset = on_grid(towards_eye * distance, power_of_two_at(size), OFFSET_GRID_EXPONENT);
@@ -202,14 +207,22 @@ impl Framing {
     }
 
     /// How far away the sphere around the bounding box fills the field of view.
-    fn distance_that_shows(&self, (low, high): (DVec3, DVec3), target: DVec3) -> f64 {
+    fn distance_that_shows(
+        &self,
+        (low, high): (DVec3, DVec3),
+        target: DVec3,
+    ) -> Result<f64, FramingError> {
         let farthest = (high - target).abs().max((low - target).abs());
         let radius = farthest.length();
         let half_angle = self.fov_deg.clamp(0.0, 180.0).to_radians() / 2.0;
         let distance = radius / libm::sin(half_angle);
         let step = power_of_two_at(distance) * libm::exp2(f64::from(1 - DISTANCE_BITS));
         let rounded_up = (distance / step).ceil() * step;
-        if rounded_up > 0.0 { rounded_up } else { 1.0 }
+        if !radius.is_finite() || distance.is_infinite() && half_angle > 0.0 {
+            let largest = low.abs().max(high.abs()).max_element();
+            return Err(FramingError::TooLarge(largest));
+        }
+        Ok(if rounded_up > 0.0 { rounded_up } else { 1.0 })
     }
 }
 

@@ -58,8 +58,11 @@ pub enum CameraError {
     #[error("the camera's numbers must be finite")]
     NotFinite,
     /// Eye and target coincide.
-    #[error("eye and target are the same point; move one of them")]
+    #[error("eye and target are the same point")]
     NoDirection,
+    /// The way from the eye to the target is too long for a number.
+    #[error("eye and target are too far apart for double precision")]
+    TooFarApart,
     /// `up` has no part across the direction of view.
     #[error("the up direction is parallel to the direction of view")]
     UpParallel,
@@ -84,8 +87,11 @@ impl Camera {
     ) -> Result<Self, CameraError> {
         let camera = Self { eye, target, up, projection };
         let forward = camera.forward();
-        if !(eye.is_finite() && target.is_finite() && up.is_finite() && forward.is_finite()) {
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
             return Err(CameraError::NotFinite);
+        }
+        if !forward.is_finite() {
+            return Err(CameraError::TooFarApart);
         }
         if forward == DVec3::ZERO {
             return Err(CameraError::NoDirection);

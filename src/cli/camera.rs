@@ -139,14 +139,23 @@ impl ViewSource {
     pub(super) fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, Box<dyn Error>> {
         match self {
             Self::File(path) => read_camera(path),
-            Self::Framing(framing) => framing.camera(bounds).map_err(|error| match error {
-                FramingError::Camera(CameraError::UpParallel) => {
-                    format!("{error}; give another --up").into()
-                }
-                _ => error.into(),
-            }),
+            Self::Framing(framing) => {
+                framing.camera(bounds).map_err(|error| with_remedy(&error).into())
+            }
         }
     }
+}
+
+/// An error about the point of view, with the options that mend it.
+fn with_remedy(error: &FramingError) -> String {
+    let remedy = match error {
+        FramingError::Camera(CameraError::UpParallel) => "; give another --up",
+        FramingError::Camera(CameraError::NoDirection | CameraError::TooFarApart) => {
+            "; give another --eye or --target"
+        }
+        _ => "",
+    };
+    format!("{error}{remedy}")
 }
 
 fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {

@@ -5,7 +5,9 @@ mod lines;
 use std::error::Error;
 
 use clap::Args;
+use glam::DVec2;
 use hiddenline::draw::{DrawOptions, draw};
+use hiddenline::model::scene::Scene;
 use hiddenline::optimize::Options;
 use hiddenline::page::{Dash, PageOptions, PlotOptions};
 use hiddenline::write::Format;
@@ -104,8 +106,33 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
     run.stats.count(&scene);
     run.stats.add(&drawn);
+    if drawn.drawing.is_empty() {
+        run.empty_because = why_empty(job, &scene, &sheet, drawn.n_lines);
+    }
     drop(scene);
     run.draw(&drawn.drawing, &sheet, plot_options(job), &Options::for_drawings())
+}
+
+/// Why a drawing has no strokes, and what helps.
+fn why_empty(job: &Job, scene: &Scene, sheet: &Sheet, n_lines: usize) -> String {
+    let mm_per_unit = sheet.page.mm_per_image_unit();
+    let all = DrawOptions { shortest_stroke_mm: 0.0, ..job.draw };
+    let with_all = draw(scene, &sheet.camera, &all, mm_per_unit).drawing;
+    if !with_all.is_empty() {
+        let length = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+        let longest = with_all.iter().map(|stroke| length(stroke.points)).fold(0.0, f64::max);
+        return format!(
+            "every stroke is shorter than --shortest-stroke {} mm, the longest {:.2e} mm; give a \
+             larger --drawing-scale, the model's unit by --unit, such as m, or a smaller \
+             --shortest-stroke",
+            job.draw.shortest_stroke_mm,
+            longest * mm_per_unit
+        );
+    }
+    if n_lines == 0 && sheet.extent.corners().is_some() {
+        return "the model has no lines of the kinds selected; give other --lines".to_owned();
+    }
+    "nothing is in view".to_owned()
 }
 
 fn plot_options(job: &Job) -> PlotOptions {

@@ -178,7 +178,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
-    let Run { output, start, progress, stats, mut notes, unit_mm } = run;
+    let Run { output, start, progress, stats, mut notes, unit_mm, empty_because } = run;
     drop(progress);
     let cameras = (0..n).map(|k| turned(&camera, 360.0 * f64::from(k) / f64::from(n)));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
@@ -188,7 +188,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
-        let run = Run { output, start, progress, stats: stats.clone(), notes, unit_mm };
+        let empty_because = empty_because.clone();
+        let run =
+            Run { output, start, progress, stats: stats.clone(), notes, unit_mm, empty_because };
         let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;
     }

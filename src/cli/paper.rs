@@ -48,13 +48,15 @@ pub(super) struct Run<'a> {
     pub(super) notes: Notes,
     /// Millimeters of a model unit, for scales in messages.
     pub(super) unit_mm: f64,
+    /// Why there are no strokes, if it turns out that there are none.
+    pub(super) empty_because: String,
 }
 
 /// A page, and what it shows from where.
 pub(super) struct Sheet {
     pub(super) camera: Camera,
     pub(super) page: Page,
-    extent: Extent,
+    pub(super) extent: Extent,
     options: PageOptions,
 }
 
@@ -130,7 +132,8 @@ impl<'a> Run<'a> {
         let stats = start_threads(output.threads)?;
         let progress = Progress::new(output.quiet);
         let notes = Notes { warnings: output.warnings.clone(), ..Notes::default() };
-        Ok(Self { output, start, progress, stats, notes, unit_mm: 1.0 })
+        let empty_because = "nothing is in view".to_owned();
+        Ok(Self { output, start, progress, stats, notes, unit_mm: 1.0, empty_because })
     }
 
     /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
@@ -158,6 +161,9 @@ impl<'a> Run<'a> {
             let hint = fitting.map(|scale| format!("; the largest scale that fits is {scale}"));
             let hint = hint.unwrap_or_default();
             self.notes.warnings.push(format!("lines were cut off at the margins{hint}"));
+        }
+        if placed.cropped {
+            self.empty_because = "all of it lies beyond the margins".to_owned();
         }
         self.plot(&paper, placed.plot, usual)
     }
@@ -243,7 +249,7 @@ impl<'a> Run<'a> {
         write: impl FnOnce(&mut dyn Write) -> Result<(), PngError>,
     ) -> Result<(), Box<dyn Error>> {
         if is_empty {
-            self.notes.warnings.push("the drawing is empty: nothing is in view".into());
+            self.notes.warnings.push(format!("the drawing is empty: {}", self.empty_because));
         }
         if self.output.strict && !self.notes.warnings.is_empty() {
             drop(self.progress);

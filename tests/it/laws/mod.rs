@@ -7,6 +7,7 @@ mod closed_forms;
 mod drawings;
 pub(crate) mod engines;
 mod extent;
+mod framing;
 mod intersections;
 mod invariance;
 mod layers;

@@ -2,6 +2,7 @@
 
 mod cli;
 mod drawings;
+mod empty;
 pub(crate) mod fill;
 mod hidden_levels;
 mod mistakes;
