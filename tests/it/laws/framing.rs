@@ -1,10 +1,11 @@
 //! Named views and axes against closed forms.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::axes::{Titles, dress, text};
+use hiddenline::axes::{Titles, axes, text};
 use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
 use hiddenline::camera::{Camera, Projection};
-use hiddenline::strokes::{Drawing, StrokeKind};
+use hiddenline::extent::Extent;
+use hiddenline::strokes::StrokeKind;
 
 const CUBE: (DVec3, DVec3) = (DVec3::NEG_ONE, DVec3::ONE);
 
@@ -30,10 +31,13 @@ fn named_views_shorten_the_axes_as_the_textbooks_say() {
 }
 
 /// The lines and ticks of the axes around a box, and how many strokes its lettering has.
-fn axes(bounds: (DVec3, DVec3), factor: f64, camera: &Camera) -> (Vec<[DVec2; 2]>, usize) {
-    let mut drawing = Drawing::default();
+fn lines_and_text(
+    bounds: (DVec3, DVec3),
+    factor: f64,
+    camera: &Camera,
+) -> (Vec<[DVec2; 2]>, usize) {
     let titles = Titles { axes: Default::default(), drawing: String::new() };
-    dress(&mut drawing, bounds, factor, camera, &titles);
+    let drawing = axes(&Extent::EMPTY, bounds, factor, camera, &titles);
     let of = |kind| drawing.iter().filter(move |stroke| stroke.kind == kind);
     let lines = of(StrokeKind::Axis).map(|stroke| [stroke.points[0], stroke.points[1]]).collect();
     (lines, of(StrokeKind::Text).count())
@@ -64,7 +68,7 @@ fn axes_run_along_the_outline_of_the_box_z_on_the_left_and_the_others_below() {
                         sides.fold((0.0_f64, 0.0_f64), |(l, m), s| (l.min(s), m.max(s)));
                     least > -1e-9 || most < 1e-9
                 };
-                let (found, _) = axes((low, high), 1.0, &camera);
+                let (found, _) = lines_and_text((low, high), 1.0, &camera);
                 for axis in 0..3 {
                     let edges = (0..8).filter(|k| k >> axis & 1 == 0);
                     let edges = edges.map(|k| [corner(k), corner(k | 1 << axis)]);
@@ -94,7 +98,7 @@ fn numbers_on_the_z_axis_are_heights_before_scaling() {
         Projection::Orthographic,
     )
     .expect("a camera");
-    let (lines, n_text) = axes(bounds, 7.0, &camera);
+    let (lines, n_text) = lines_and_text(bounds, 7.0, &camera);
     let mut feet: Vec<f64> = lines[1..].iter().map(|tick| tick[0].y + 14.0).collect();
     feet.sort_by(f64::total_cmp);
     let expected = [0.0, 7.0, 14.0, 21.0, 28.0];
@@ -102,7 +106,7 @@ fn numbers_on_the_z_axis_are_heights_before_scaling() {
     assert!(feet.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{feet:?}");
     let strokes = |label: &str| text(label, 1.0).0.len();
     assert_eq!(n_text, ["0", "1", "2", "3", "4"].map(strokes).iter().sum::<usize>());
-    let (lines, _) = axes(bounds, 1.0, &camera);
+    let (lines, _) = lines_and_text(bounds, 1.0, &camera);
     let mut feet: Vec<f64> = lines[1..].iter().map(|tick| tick[0].y + 14.0).collect();
     feet.sort_by(f64::total_cmp);
     assert!((feet[1] - 10.0).abs() < 1e-9, "{feet:?}");
