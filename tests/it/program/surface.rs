@@ -456,13 +456,13 @@ fn the_zero_curve_of_a_saddle_is_a_cross() {
         let found = ink_mm(&folder, &cross);
         assert!((found - 380.0).abs() < 0.05, "{samples}: {found}");
     }
-    // A plateau of whole numbers is outlined once: around 4 × 2 cells, 277 mm wide on A4.
+    // A plateau of whole numbers is outlined once: 4 × 2 cells of 7 × 4, which are 277 mm wide on A4.
     let zeros = "0 0 0 0 0 0 0 0\n";
     let ones = "0 1 1 1 1 1 0 0\n";
     let folder = with_file([zeros, ones, ones, ones, zeros].concat());
     let levels = ["--grid", "heights", "--lines", "levels", "--levels", "1,", "--view", "top"];
     let found = ink_mm(&folder, &levels);
-    assert!((found - 12.0 * 277.0 / 4.0).abs() < 0.05, "{found}");
+    assert!((found - 12.0 * 277.0 / 7.0).abs() < 0.05, "{found}");
 }
 
 #[test]
