@@ -90,6 +90,19 @@ pub enum ProjectionKind {
     Orthographic,
 }
 
+impl ProjectionKind {
+    /// Both kinds.
+    pub const ALL: [Self; 2] = [Self::Perspective, Self::Orthographic];
+
+    /// The name used on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Perspective => "perspective",
+            Self::Orthographic => "orthographic",
+        }
+    }
+}
+
 /// A camera as asked for; what is `None` is chosen to suit the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Framing {

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 use hiddenline::camera::framing::{
     DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, FramingError, NamedView, ProjectionKind,
@@ -13,6 +13,7 @@ use hiddenline::camera::framing::{
 use hiddenline::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR};
 use hiddenline::write::json;
 
+use super::choice::one_of;
 use super::paths::is_dash;
 use super::values;
 
@@ -40,11 +41,11 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "D", value_parser = values::positive, conflicts_with = "eye")]
     distance: Option<f64>,
     /// A view with a name, orthographic unless --projection says otherwise
-    #[arg(long, value_enum, conflicts_with = "eye")]
-    view: Option<View>,
-    /// How rays of sight run [default: perspective, but orthographic with --view]
-    #[arg(long, value_enum)]
-    projection: Option<ProjectionName>,
+    #[arg(long, value_parser = one_of::<NamedView>(), conflicts_with = "eye")]
+    view: Option<NamedView>,
+    /// Projection [default: perspective, but orthographic with --view]
+    #[arg(long, value_parser = one_of::<ProjectionKind>())]
+    projection: Option<ProjectionKind>,
     /// Vertical field of view in degrees
     ///
     /// It says how far away an automatic camera stands and what --fit-fov shows, nothing else.
@@ -62,34 +63,6 @@ pub(super) struct CameraArgs {
     camera: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy)]
-struct View(NamedView);
-
-impl ValueEnum for View {
-    fn value_variants<'a>() -> &'a [Self] {
-        const VIEWS: [View; 9] = {
-            let mut views = [View(NamedView::Front); 9];
-            let mut i = 0;
-            while i < views.len() {
-                views[i] = View(NamedView::ALL[i]);
-                i += 1;
-            }
-            views
-        };
-        &VIEWS
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(clap::builder::PossibleValue::new(self.0.name()))
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ProjectionName {
-    Perspective,
-    Orthographic,
-}
-
 /// Where the camera comes from.
 pub(super) enum ViewSource {
     /// A strokes file.
@@ -105,7 +78,7 @@ impl CameraArgs {
         }
         let standpoint = match (self.eye, self.view) {
             (Some(eye), _) => Standpoint::Eye(eye),
-            (None, Some(View(view))) => Standpoint::Named { view, distance: self.distance },
+            (None, Some(view)) => Standpoint::Named { view, distance: self.distance },
             (None, None) => Standpoint::Angles {
                 azimuth_deg: self.azimuth.unwrap_or(DEFAULT_AZIMUTH_DEG),
                 elevation_deg: self.elevation.unwrap_or(DEFAULT_ELEVATION_DEG),
@@ -116,10 +89,7 @@ impl CameraArgs {
             standpoint,
             target: self.target,
             up: self.up,
-            projection: self.projection.map(|name| match name {
-                ProjectionName::Perspective => ProjectionKind::Perspective,
-                ProjectionName::Orthographic => ProjectionKind::Orthographic,
-            }),
+            projection: self.projection,
             fov_deg: self.fov,
             near: self.near,
         })

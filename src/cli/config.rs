@@ -1,8 +1,9 @@
-//! Settings from configuration files and the environment, under those that are typed.
+//! Settings from configuration files and the environment.
 //!
-//! Each becomes the option of its name, unless that option or one that conflicts with it was set
-//! by something that goes first: typed options, then the preset that was asked for, then the
-//! environment (`HIDDENLINE_PAGE` for `--page`), then `./hiddenline.toml`, then the user's file.
+//! A setting stands for the option of its name; every option of every command can be set. Options on
+//! the command line take precedence, then the chosen preset, then the environment (`HIDDENLINE_PAGE`
+//! for `--page`), then `./hiddenline.toml`, then the user's file. A setting is dropped if its option,
+//! or one that conflicts with it, is set with higher precedence.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -11,21 +12,26 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command};
-use serde::{Deserialize, Serialize};
+use clap::{Arg, ArgMatches, Command};
+use serde::Deserialize;
 use thiserror::Error;
+use toml::de::{DeTable, DeValue};
+use toml::{Table, Value};
 
-use super::suggestion::suggestion;
-use super::{file, usage};
+use super::suggestion::{near, suggestion};
+use super::{file, messages, usage};
 
 /// Settings of the folder.
 const PROJECT_FILE: &str = "hiddenline.toml";
 /// Settings of the user, in the folder for configurations.
 const USER_FILE: &str = "hiddenline/config.toml";
+/// How the names of environment variables begin.
+const PREFIX: &str = "HIDDENLINE_";
 /// Commands that settings apply to.
 const COMMANDS: [&str; 5] = ["draw", "surface", "fill", "preview", "optimize"];
-/// Settings for pens, which a picture of filled areas has no use for.
+/// Settings for pens, which do not apply to filled areas.
 const FOR_PENS: [&str; 3] = ["format", "machine", "gcode-profile"];
 
 /// The arguments with all settings, without the program's name.
@@ -35,89 +41,14 @@ static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    /// Settings by the names of their options.
     #[serde(default)]
-    defaults: Settings,
+    defaults: Table,
     #[serde(default)]
-    preset: BTreeMap<String, Settings>,
-    /// Machines of one's own.
+    preset: BTreeMap<String, Table>,
+    /// Machines that the file describes.
     #[serde(default)]
-    machine: BTreeMap<String, toml::Table>,
-}
-
-/// Options that can be set; each is named as on the command line.
-#[derive(Debug, Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Settings {
-    page: Option<String>,
-    landscape: Option<bool>,
-    portrait: Option<bool>,
-    margin: Option<Scalar>,
-    pen_width: Option<Scalar>,
-    pen: Option<Vec<String>>,
-    view: Option<String>,
-    azimuth: Option<f64>,
-    elevation: Option<f64>,
-    projection: Option<String>,
-    fov: Option<f64>,
-    up_axis: Option<String>,
-    crease: Option<f64>,
-    lines: Option<String>,
-    hidden: Option<String>,
-    hidden_levels: Option<u32>,
-    dash: Option<String>,
-    shortest_stroke: Option<Scalar>,
-    format: Option<String>,
-    dpi: Option<f64>,
-    threads: Option<u16>,
-    optimize: Option<String>,
-    simplify: Option<Scalar>,
-    join_tolerance: Option<Scalar>,
-    split_distance: Option<Scalar>,
-    machine: Option<String>,
-    gcode_profile: Option<String>,
-    strict: Option<bool>,
-    color: Option<String>,
-}
-
-/// Names in [`Settings`], which the environment can give too.
-const NAMES: [&str; 29] = [
-    "page",
-    "landscape",
-    "portrait",
-    "margin",
-    "pen-width",
-    "pen",
-    "view",
-    "azimuth",
-    "elevation",
-    "projection",
-    "fov",
-    "up-axis",
-    "crease",
-    "lines",
-    "hidden",
-    "hidden-levels",
-    "dash",
-    "shortest-stroke",
-    "format",
-    "dpi",
-    "threads",
-    "optimize",
-    "simplify",
-    "join-tolerance",
-    "split-distance",
-    "machine",
-    "gcode-profile",
-    "strict",
-    "color",
-];
-
-/// A length: millimeters, or text with a unit.
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(untagged)]
-enum Scalar {
-    Number(f64),
-    Text(String),
+    machine: BTreeMap<String, Table>,
 }
 
 /// Why settings cannot be used.
@@ -129,16 +60,47 @@ pub(super) enum ConfigError {
     Toml { path: PathBuf, error: toml::de::Error },
     #[error("{origin}: {name} is true or false, not {value:?}")]
     NoFlag { origin: String, name: String, value: String },
-    #[error("{origin}: a setting cannot be used: {error}")]
-    Unusable { origin: String, error: toml::ser::Error },
+    #[error("{origin}: {name} takes one value, or several if its option can be repeated")]
+    NoValue { origin: String, name: String },
+    #[error("{}:{line}: unknown setting `{name}`{suggestion}", path.display())]
+    Unknown { path: PathBuf, line: usize, name: String, suggestion: String },
     #[error("there is no preset called `{name}`{suggestion}")]
     NoPreset { name: String, suggestion: String, command: String },
 }
 
-/// Settings of one origin, as options with values; flags have none.
+/// Settings of one origin.
 struct Layer {
     origin: String,
-    options: Vec<(String, Option<String>)>,
+    settings: Vec<Setting>,
+}
+
+/// An option and its values: none for a flag, several for an option that takes several at once.
+struct Setting {
+    name: String,
+    values: Vec<String>,
+}
+
+impl Setting {
+    /// The option as it would be typed.
+    fn arguments(&self) -> Vec<OsString> {
+        match self.values.as_slice() {
+            [value] => vec![format!("--{}={value}", self.name).into()],
+            values => {
+                let option = std::iter::once(format!("--{}", self.name));
+                option.chain(values.iter().cloned()).map(OsString::from).collect()
+            }
+        }
+    }
+
+    /// Whether a command's option takes the values.
+    fn suits(&self, command: &Command) -> bool {
+        let name = OsString::from(command.get_name());
+        let typed = std::iter::once(name).chain(self.arguments());
+        let refused = |error: clap::Error| {
+            matches!(error.kind(), ErrorKind::InvalidValue | ErrorKind::ValueValidation)
+        };
+        !command.clone().try_get_matches_from(typed).is_err_and(refused)
+    }
 }
 
 /// The arguments that hold, without the program's name.
@@ -175,20 +137,20 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
         options.get_arguments().filter(|arg| is_typed(arg.get_id().as_str())).collect();
     let mut added = Vec::new();
     let mut origins = Vec::new();
-    for layer in layers(preset, name)? {
+    for layer in layers(preset, name, &command)? {
         let mut used = Vec::new();
-        for (name, value) in &layer.options {
-            let by_name = |arg: &&clap::Arg| arg.get_long() == Some(name.as_str());
-            // Settings for other commands are none for this one: kinds of line are those of models.
-            if name == "lines"
-                && !options.get_arguments().any(|arg| arg.get_long() == Some("crease"))
-            {
+        for setting in &layer.settings {
+            if options.get_name() == "fill" && FOR_PENS.contains(&setting.name.as_str()) {
                 continue;
             }
-            if options.get_name() == "fill" && FOR_PENS.contains(&name.as_str()) {
+            let Some(arg) = option(options, &setting.name) else { continue };
+            // Commands share names: the lines of a model are not those of a surface. What another
+            // command takes is meant for that one; what none takes is refused below.
+            let other = |other: &&Command| option(other, &setting.name).is_some();
+            let mut others = commands(&command).filter(other);
+            if !setting.suits(options) && others.any(|other| setting.suits(other)) {
                 continue;
             }
-            let Some(arg) = options.get_arguments().find(by_name) else { continue };
             let conflicts = |a: &clap::Arg, b: &clap::Arg| {
                 options.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == b.get_id())
             };
@@ -197,10 +159,7 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
             });
             if !is_taken {
                 used.push(arg);
-                added.push(OsString::from(match value {
-                    Some(value) => format!("--{name}={value}"),
-                    None => format!("--{name}"),
-                }));
+                added.extend(setting.arguments());
             }
         }
         if !used.is_empty() {
@@ -219,13 +178,38 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
     })
 }
 
-/// Settings by origin, those that go first before the others; `command` is for messages.
-fn layers(preset: Option<String>, command: &str) -> Result<Vec<Layer>, ConfigError> {
+/// The commands that settings apply to.
+fn commands(program: &Command) -> impl Iterator<Item = &Command> {
+    COMMANDS.iter().filter_map(|name| program.find_subcommand(name))
+}
+
+/// A command's option of this name.
+fn option<'a>(command: &'a Command, name: &str) -> Option<&'a Arg> {
+    command.get_arguments().find(|arg| arg.get_long() == Some(name))
+}
+
+/// All options that can be set, by name.
+fn known(program: &Command) -> BTreeMap<&str, &Arg> {
+    let options = commands(program).flat_map(Command::get_arguments);
+    let named = options.filter_map(|arg| Some((arg.get_long()?, arg)));
+    named.filter(|(name, _)| !["help", "version", "preset"].contains(name)).collect()
+}
+
+/// Settings by origin, the highest precedence first; `command` is for messages.
+fn layers(
+    preset: Option<String>,
+    command: &str,
+    program: &Command,
+) -> Result<Vec<Layer>, ConfigError> {
+    let known = known(program);
     let preset = preset.or_else(|| std::env::var("HIDDENLINE_PRESET").ok());
     let preset = preset.filter(|name| !name.is_empty());
     let mut files = Vec::new();
     for path in paths() {
         if let Some(file) = read(&path)? {
+            for settings in std::iter::once(&file.defaults).chain(file.preset.values()) {
+                refuse_unknown(settings, &known, &path)?;
+            }
             files.push((path, file));
         }
     }
@@ -241,12 +225,12 @@ fn layers(preset: Option<String>, command: &str) -> Result<Vec<Layer>, ConfigErr
             return Err(ConfigError::NoPreset { name, suggestion, command: command.to_owned() });
         };
         let origin = format!("preset {name} in {}", path.display());
-        layers.push(Layer { options: options(settings, &origin)?, origin });
+        layers.push(Layer { settings: settings_of(settings, &known, &origin)?, origin });
     }
-    layers.push(environment()?);
+    layers.push(environment(&known)?);
     for (path, file) in &files {
         let origin = path.display().to_string();
-        layers.push(Layer { options: options(&file.defaults, &origin)?, origin });
+        layers.push(Layer { settings: settings_of(&file.defaults, &known, &origin)?, origin });
     }
     Ok(layers)
 }
@@ -255,7 +239,7 @@ fn layers(preset: Option<String>, command: &str) -> Result<Vec<Layer>, ConfigErr
 #[derive(Default)]
 pub(super) struct OwnMachines {
     /// The one that was asked for, and what to call its place.
-    pub(super) found: Option<(toml::Table, String)>,
+    pub(super) found: Option<(Table, String)>,
     /// The names of all.
     pub(super) names: Vec<String>,
 }
@@ -301,62 +285,146 @@ fn read(path: &Path) -> Result<Option<File>, ConfigError> {
     file.map(Some).map_err(|error| ConfigError::Toml { path: path.to_owned(), error })
 }
 
-/// Settings as options.
-fn options(
-    settings: &Settings,
-    origin: &str,
-) -> Result<Vec<(String, Option<String>)>, ConfigError> {
-    let table = toml::Table::try_from(settings)
-        .map_err(|error| ConfigError::Unusable { origin: origin.to_owned(), error })?;
-    let mut options = Vec::new();
-    for (name, value) in table {
-        match value {
-            toml::Value::Boolean(true) => options.push((name, None)),
-            toml::Value::Boolean(false) => {}
-            toml::Value::Array(values) => {
-                options.extend(values.iter().map(|value| (name.clone(), Some(plain(value)))));
-            }
-            value => options.push((name, Some(plain(&value)))),
-        }
+/// Refuses a table with a setting that is not the name of any option.
+fn refuse_unknown(
+    settings: &Table,
+    known: &BTreeMap<&str, &Arg>,
+    path: &Path,
+) -> Result<(), ConfigError> {
+    let Some(name) = settings.keys().find(|name| !known.contains_key(name.as_str())) else {
+        return Ok(());
+    };
+    // Only now is it worth finding out where.
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    Err(ConfigError::Unknown {
+        path: path.to_owned(),
+        line: line_of(&text, name),
+        name: name.clone(),
+        suggestion: did_you_mean(name, known),
+    })
+}
+
+/// The line of the first setting called `name`, counted from 1.
+fn line_of(text: &str, name: &str) -> usize {
+    fn place(table: &DeTable, name: &str) -> Option<usize> {
+        table.iter().find_map(|(key, value)| match value.get_ref() {
+            _ if key.get_ref() == name => Some(key.span().start),
+            DeValue::Table(inner) => place(inner, name),
+            _ => None,
+        })
     }
-    Ok(options)
+    let table = DeTable::parse(text).ok();
+    let place = table.and_then(|table| place(table.get_ref(), name)).unwrap_or(0);
+    1 + text[..place].matches('\n').count()
 }
 
-fn plain(value: &toml::Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+fn did_you_mean(name: &str, known: &BTreeMap<&str, &Arg>) -> String {
+    let known: Vec<&str> = known.keys().copied().collect();
+    match near(name, &known).as_slice() {
+        [] => "; settings have the names of options, see --help".to_owned(),
+        near => format!("; did you mean {}?", near.join(" or ")),
+    }
 }
 
-/// Settings from environment variables; several pens have blanks between them.
-fn environment() -> Result<Layer, ConfigError> {
-    let mut options = Vec::new();
-    for name in NAMES {
-        let variable = format!("HIDDENLINE_{}", name.replace('-', "_").to_ascii_uppercase());
-        let Some(value) = std::env::var(&variable).ok().filter(|value| !value.is_empty()) else {
+/// Settings of a table whose names are all known.
+fn settings_of(
+    table: &Table,
+    known: &BTreeMap<&str, &Arg>,
+    origin: &str,
+) -> Result<Vec<Setting>, ConfigError> {
+    let mut settings = Vec::new();
+    for (name, value) in table {
+        let Some(arg) = known.get(name.as_str()) else { continue };
+        let values: Option<Vec<String>> = match value {
+            Value::Array(values) => values.iter().map(plain).collect(),
+            value => plain(value).map(|value| vec![value]),
+        };
+        let no_value = || ConfigError::NoValue { origin: origin.to_owned(), name: name.clone() };
+        let values = values.ok_or_else(no_value)?;
+        if values.len() != 1 && !takes_several(arg) && !is_repeated(arg) {
+            return Err(no_value());
+        }
+        settings.extend(set(name, values, arg, origin)?);
+    }
+    Ok(settings)
+}
+
+/// A plain value as it would be typed.
+fn plain(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Integer(_) | Value::Float(_) | Value::Boolean(_) => Some(value.to_string()),
+        Value::Datetime(_) | Value::Array(_) | Value::Table(_) => None,
+    }
+}
+
+/// Whether an option takes several values each time.
+fn takes_several(arg: &Arg) -> bool {
+    arg.get_num_args().is_some_and(|range| range.max_values() > 1)
+}
+
+/// Whether an option can be given more than once.
+fn is_repeated(arg: &Arg) -> bool {
+    matches!(arg.get_action(), clap::ArgAction::Append)
+}
+
+/// The values of one setting as options: a flag or nothing, one with all values, or one for each.
+fn set(
+    name: &str,
+    values: Vec<String>,
+    arg: &Arg,
+    origin: &str,
+) -> Result<Vec<Setting>, ConfigError> {
+    let setting = |values| Setting { name: name.to_owned(), values };
+    if arg.get_action().takes_values() {
+        return Ok(if takes_several(arg) {
+            vec![setting(values)]
+        } else {
+            values.into_iter().map(|value| setting(vec![value])).collect()
+        });
+    }
+    match values.first().map(String::as_str) {
+        Some("1" | "true") => Ok(vec![setting(Vec::new())]),
+        Some("0" | "false") => Ok(Vec::new()),
+        value => Err(ConfigError::NoFlag {
+            origin: origin.to_owned(),
+            name: name.to_owned(),
+            value: value.unwrap_or_default().to_owned(),
+        }),
+    }
+}
+
+/// Settings from environment variables, with a warning about each that is not the name of an option.
+///
+/// Several pens have blanks between them, as have the values of options that take several.
+fn environment(known: &BTreeMap<&str, &Arg>) -> Result<Layer, ConfigError> {
+    let mut variables: Vec<(String, String)> = std::env::vars_os()
+        .filter_map(|(name, value)| {
+            let name = name.to_str()?.strip_prefix(PREFIX)?.to_owned();
+            Some((name, value.to_string_lossy().into_owned()))
+        })
+        .filter(|(name, value)| name != "PRESET" && !value.is_empty())
+        .collect();
+    variables.sort();
+    let mut settings = Vec::new();
+    for (variable, value) in variables {
+        let name = variable.replace('_', "-").to_ascii_lowercase();
+        let Some(arg) = known.get(name.as_str()) else {
+            let hint = did_you_mean(&name, known);
+            messages::warning(&format!("{PREFIX}{variable} is not a setting{hint}"));
             continue;
         };
-        match name {
-            "landscape" | "portrait" | "strict" => match value.as_str() {
-                "1" | "true" => options.push((name.to_owned(), None)),
-                "0" | "false" => {}
-                _ => {
-                    return Err(ConfigError::NoFlag {
-                        origin: variable,
-                        name: name.to_owned(),
-                        value,
-                    });
-                }
-            },
-            "pen" => {
-                let pens = value.split_whitespace();
-                options.extend(pens.map(|pen| (name.to_owned(), Some(pen.to_owned()))));
-            }
-            _ => options.push((name.to_owned(), Some(value))),
-        }
+        let values = if name == "pen" || takes_several(arg) {
+            value.split_whitespace().map(str::to_owned).collect()
+        } else {
+            vec![value]
+        };
+        settings.extend(set(&name, values, arg, &format!("{PREFIX}{variable}"))?);
     }
-    Ok(Layer { origin: "the environment (HIDDENLINE_…)".into(), options })
+    Ok(Layer { origin: "the environment (HIDDENLINE_…)".into(), settings })
 }
 
-/// Prints which files are read, which presets there are, and the settings that hold.
+/// Prints which files are read, their presets and machines, and the settings in effect.
 pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
     let mut text = String::new();
     for path in paths() {
@@ -371,11 +439,20 @@ pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
             }
         }
     }
+    let mut program = usage::command();
+    program.build();
     let mut seen: Vec<String> = Vec::new();
-    for layer in layers(preset.map(str::to_owned), "config")? {
+    for layer in layers(preset.map(str::to_owned), "config", &program)? {
         let mut names = Vec::new();
-        for (name, value) in layer.options.into_iter().filter(|(name, _)| !seen.contains(name)) {
-            let value = value.map_or_else(|| "true".to_owned(), |value| format!("{value:?}"));
+        for Setting { name, values } in layer.settings {
+            if seen.contains(&name) {
+                continue;
+            }
+            let value = match values.as_slice() {
+                [] => "true".to_owned(),
+                [value] => format!("{value:?}"),
+                values => format!("{values:?}"),
+            };
             writeln!(text, "{name} = {value}  # {}", layer.origin)?;
             names.push(name);
         }

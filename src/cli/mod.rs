@@ -1,6 +1,7 @@
 //! The command line: typed arguments to a validated job, and the job to a file.
 
 mod camera;
+mod choice;
 mod config;
 mod draw;
 mod file;

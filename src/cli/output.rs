@@ -10,6 +10,7 @@ use hiddenline::write::png::{Marks, Resolution};
 use hiddenline::write::svg::StrokeElement;
 
 pub(super) use self::place::check_place;
+use super::choice::one_of;
 use super::machine::Target;
 use super::paths::is_dash;
 use super::plotting::{PlotArgs, Plotting};
@@ -24,11 +25,12 @@ pub(super) struct OutputArgs {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Format of the output [default: by extension; svg on standard output]
-    #[arg(long, value_enum)]
-    format: Option<FormatName>,
+    #[arg(long, value_parser = one_of::<Format>())]
+    format: Option<Format>,
     /// Element that a stroke is written as in SVG
-    #[arg(long, value_name = "ELEMENT", value_enum, default_value = "path")]
-    svg_element: SvgElement,
+    #[arg(long, value_name = "ELEMENT", value_parser = one_of::<StrokeElement>())]
+    #[arg(default_value = StrokeElement::default().name())]
+    svg_element: StrokeElement,
     /// Pixels per inch of a PNG [default: 150]
     #[arg(long, value_parser = values::positive, conflicts_with = "png_width")]
     dpi: Option<f64>,
@@ -63,27 +65,10 @@ pub(super) struct OutputArgs {
     plotting: PlotArgs,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatName {
-    Svg,
-    Hpgl,
-    Gcode,
-    Pdf,
-    Dxf,
-    Png,
-    Json,
-}
-
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum PngMark {
     Travel,
     Order,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum SvgElement {
-    Path,
-    Polyline,
 }
 
 /// Where the drawing goes, and what is told on the way.
@@ -122,10 +107,7 @@ impl OutputArgs {
             target,
             format,
             path,
-            svg_element: match self.svg_element {
-                SvgElement::Path => StrokeElement::Path,
-                SvgElement::Polyline => StrokeElement::Polyline,
-            },
+            svg_element: self.svg_element,
             marks: Marks {
                 travel: self.png_show.contains(&PngMark::Travel),
                 order: self.png_show.contains(&PngMark::Order),
@@ -157,9 +139,9 @@ fn without_effect(format: Format) -> Vec<String> {
     options.map(warning).collect()
 }
 
-fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Format, String> {
+fn output_format(typed: Option<Format>, path: Option<&Path>) -> Result<Format, String> {
     match (typed, path) {
-        (Some(name), _) => Ok(name.format()),
+        (Some(format), _) => Ok(format),
         (None, None) => Ok(Format::Svg),
         (None, Some(path)) => Format::from_path(path).ok_or_else(|| {
             let known = Format::ALL.iter().flat_map(|format| format.extensions());
@@ -167,19 +149,5 @@ fn output_format(typed: Option<FormatName>, path: Option<&Path>) -> Result<Forma
             let known = known.join(", ");
             format!("`{}` has none of the extensions {known}; give --format", path.display())
         }),
-    }
-}
-
-impl FormatName {
-    fn format(self) -> Format {
-        match self {
-            Self::Svg => Format::Svg,
-            Self::Hpgl => Format::Hpgl,
-            Self::Gcode => Format::Gcode,
-            Self::Pdf => Format::Pdf,
-            Self::Dxf => Format::Dxf,
-            Self::Png => Format::Png,
-            Self::Json => Format::Json,
-        }
     }
 }

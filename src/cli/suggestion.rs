@@ -1,18 +1,25 @@
-//! "Did you mean": the end of a message about an unknown name.
+//! "Did you mean": names like one that is unknown.
 
-/// How alike names are that one may have been typed for the other; Jaro-Winkler, at most 1.
+/// Names at least this much like an unknown one are suggested (Jaro-Winkler similarity).
 const ALIKE: f64 = 0.75;
 
-/// What may have been meant, and everything that there is, as the end of a message.
+/// The end of a message about an unknown name: what may have been meant, and all known names.
 pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
+    let near = near(name, &known);
+    let known = known.join(", ");
+    if near.is_empty() {
+        format!("; there are {known}")
+    } else {
+        format!("; did you mean {}? There are {known}", near.join(" or "))
+    }
+}
+
+/// The known names most like `name`, the best first: at most three, often none.
+pub(super) fn near<'a>(name: &str, known: &[&'a str]) -> Vec<&'a str> {
     let alike = |other: &str| strsim::jaro_winkler(&name.to_ascii_lowercase(), other);
     let mut near: Vec<&str> = known.iter().copied().filter(|k| alike(k) >= ALIKE).collect();
     near.sort_by(|a, b| alike(b).total_cmp(&alike(a)));
     near.truncate(3);
-    let known = known.join(", ");
-    match near.as_slice() {
-        [] => format!("; there are {known}"),
-        near => format!("; did you mean {}? There are {known}", near.join(" or ")),
-    }
+    near
 }

@@ -26,6 +26,19 @@ pub enum StrokeElement {
     Polyline,
 }
 
+impl StrokeElement {
+    /// Both elements.
+    pub const ALL: [Self; 2] = [Self::Path, Self::Polyline];
+
+    /// The name used on the command line: that of the element.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Path => "path",
+            Self::Polyline => "polyline",
+        }
+    }
+}
+
 /// Writes `plot` as SVG. The same plot gives the same bytes.
 ///
 /// Coordinates are millimeters with up to three decimals. Points that are equal after rounding to

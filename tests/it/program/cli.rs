@@ -275,3 +275,22 @@ fn help_has_examples_and_completions_and_manual_are_printed() {
     let manual = hiddenline(&folder, &["man", "draw"]);
     assert!(text(&manual.stdout).contains(".TH"));
 }
+
+#[test]
+fn names_are_listed_in_the_help_and_suggested_for_others() {
+    let (_keep, folder) = with_cube();
+    let help = text(&hiddenline(&folder, &["draw", "--help"]).stdout);
+    for names in ["perspective, orthographic", "svg, hpgl, gcode", "path, polyline", "front, right"]
+    {
+        assert!(help.contains(names), "{names}");
+    }
+    for (option, typed, meant) in [
+        ("--view", "isometrc", "isometric"),
+        ("--projection", "perspectiv", "perspective"),
+        ("--format", "gcod", "gcode"),
+        ("--svg-element", "poliline", "polyline"),
+    ] {
+        let output = hiddenline(&folder, &["draw", "cube.obj", option, typed]);
+        assert_fails(&output, 2, &format!("'{meant}'"));
+    }
+}

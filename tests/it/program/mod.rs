@@ -8,6 +8,7 @@ mod hidden_levels;
 mod mistakes;
 mod plotting;
 mod preview;
+mod settings;
 mod surface;
 
 use std::path::Path;
@@ -24,6 +25,11 @@ pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hiddenline"));
     command.args(arguments).current_dir(folder).stdin(Stdio::null());
     command.env("XDG_CONFIG_HOME", folder.join("user"));
+    for (name, _) in std::env::vars_os() {
+        if name.to_string_lossy().starts_with("HIDDENLINE_") {
+            command.env_remove(name);
+        }
+    }
     command
 }
 
