@@ -122,7 +122,7 @@ pub(super) fn is_typed(option: &str) -> bool {
 pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn Error>> {
     command.build();
     let typed: Vec<OsString> = std::env::args_os().collect();
-    let matches = usage::parse(&command, &typed);
+    let matches = usage::parse_in_part(&command, &typed);
     let Some((name, chosen)) = matches.subcommand().filter(|(name, _)| COMMANDS.contains(name))
     else {
         return Ok(matches);
@@ -174,6 +174,9 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
     let result = command.clone().try_get_matches_from(&all);
     let _ = ARGUMENTS.set(all.split_off(1));
     result.map_err(|error| {
+        if origins.is_empty() {
+            error.exit();
+        }
         format!("with settings from {}:\n{error}", origins.join(" and ")).trim_end().into()
     })
 }

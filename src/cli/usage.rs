@@ -23,9 +23,13 @@ pub(super) fn command() -> Command {
     })
 }
 
-/// Parses what was typed; bad usage ends the program.
-pub(super) fn parse(command: &Command, typed: &[std::ffi::OsString]) -> ArgMatches {
-    let parsed = command.clone().try_get_matches_from(typed);
+/// Parses what was typed; bad usage ends the program, but for what is missing: settings may give it.
+pub(super) fn parse_in_part(command: &Command, typed: &[std::ffi::OsString]) -> ArgMatches {
+    let parse = |command: Command| command.try_get_matches_from(typed);
+    let parsed = parse(command.clone()).or_else(|error| match error.kind() {
+        ErrorKind::MissingRequiredArgument => parse(command.clone().ignore_errors(true)),
+        _ => Err(error),
+    });
     parsed.unwrap_or_else(|error| with_hints(error, command, typed).exit())
 }
 

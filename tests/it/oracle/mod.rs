@@ -12,6 +12,7 @@ mod cover;
 pub(crate) mod crossings;
 pub(crate) mod exact;
 pub(crate) mod ray_cast;
+pub(crate) mod sight_lines;
 pub(crate) mod triangulate;
 mod world;
 

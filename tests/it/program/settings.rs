@@ -17,7 +17,7 @@ fn options(command: &str) -> BTreeSet<String> {
         let line = line.trim_start();
         let line =
             line.split_once(", ").filter(|(short, _)| short.len() == 2).map_or(line, |p| p.1);
-        line.strip_prefix("--")?.split([' ', '=', '[']).next()
+        line.strip_prefix("--")?.split([' ', '=', '[', '.']).next()
     });
     words.map(str::to_owned).collect()
 }
@@ -58,7 +58,8 @@ fn every_option_of_every_command_can_be_set() {
 fn settings_do_what_the_options_do() {
     let folder = with_cube();
     let folder = folder.path();
-    let draw = ["draw", "cube.obj"];
+    // An SVG would name the command that made it.
+    let draw = ["draw", "cube.obj", "--format", "json"];
     let typed = hiddenline(folder, &[&draw[..], &["--eye=-9,-7,5", "--exact"]].concat()).stdout;
     assert!(typed != hiddenline(folder, &draw).stdout);
     let mut set = command(folder, &draw);
@@ -66,10 +67,14 @@ fn settings_do_what_the_options_do() {
     assert!(set.stdout == typed, "{}", text(&set.stderr));
     settings(folder, "[defaults]\neye = '-9,-7,5'\nexact = true\n");
     assert!(hiddenline(folder, &draw).stdout == typed);
-    settings(folder, "[defaults]\nparametric = ['cos(u)', 'sin(u)', 'v']\nsamples = 9\n");
+    settings(
+        folder,
+        "[defaults]\nparametric = ['cos(u)', 'sin(u)', 'v']\nsamples = 9\nformat = 'json'\n",
+    );
     let set = hiddenline(folder, &["surface"]);
     fs::remove_file(folder.join("hiddenline.toml")).unwrap();
-    let typed = ["surface", "--parametric", "cos(u)", "sin(u)", "v", "--samples", "9"];
+    let typed =
+        ["surface", "--parametric", "cos(u)", "sin(u)", "v", "--samples", "9", "--format=json"];
     assert!(set.stdout == hiddenline(folder, &typed).stdout, "{}", text(&set.stderr));
     assert!(!set.stdout.is_empty());
 }

@@ -3,7 +3,6 @@
 mod corners;
 mod fragments;
 mod hides;
-pub(crate) mod judge;
 mod models;
 mod order;
 

@@ -1,8 +1,8 @@
 //! Models from elsewhere: rounded, open, crossing themselves.
 
-use super::judge::World;
 use super::{ENGINES, EXACT};
 use crate::models;
+use crate::oracle::sight_lines::SightLines;
 use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
 use hiddenline::engines::face::{bsp, depth_sort, piercing};
 use hiddenline::model::scene::Scene;
@@ -34,10 +34,10 @@ fn paintings_of_models_are_what_exact_rays_meet() {
         let top = Standpoint::Named { view: NamedView::Top, distance: None };
         for framing in [Framing::default(), Framing { standpoint: top, ..Framing::default() }] {
             let camera = framing.camera(bounds).unwrap();
-            let world = World::new(&scene, &camera);
+            let world = SightLines::new(&scene, &camera);
             for (engine, solve) in ENGINES.into_iter().chain([EXACT]) {
                 let (judged, _) = world
-                    .judge(&solve(&scene, &camera), 20)
+                    .judge(&solve(&scene, &camera), 20, |_| false)
                     .unwrap_or_else(|problem| panic!("{name}, {engine}: {problem}"));
                 assert!(judged > 350, "{name}, {engine}: only {judged} points judged");
             }

@@ -1,9 +1,9 @@
 //! The order of painting: on scenes with known traps, and on random ones.
 
-use super::judge::World;
 use super::{ENGINES, EXACT};
 use crate::laws::engines::{camera, mesh};
 use crate::oracle::Sight;
+use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
@@ -13,11 +13,11 @@ use hiddenline::model::scene::Scene;
 /// Judges all engines on one scene; the number of points judged by each.
 fn judge(scene: &TestScene, n: u32) -> u32 {
     let (built, camera) = (Scene::new(mesh(scene)), camera(scene));
-    let world = World::new(&built, &camera);
+    let world = SightLines::new(&built, &camera);
     let mut least = u32::MAX;
     for (engine, solve) in [EXACT].into_iter().chain(ENGINES) {
         let painting = solve(&built, &camera);
-        match world.judge(&painting, n) {
+        match world.judge(&painting, n, |_| false) {
             Ok((judged, _)) => least = least.min(judged),
             Err(problem) => panic!("{}, {engine}: {problem}\n{scene:?}", scene.name),
         }

@@ -1,7 +1,7 @@
 //! Borders of exact regions are the visible lines of exact drawings.
 
 use super::built;
-use crate::laws::face::judge::World;
+use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
@@ -148,7 +148,7 @@ fn agreement(scene: &Scene, camera: &Camera, slack: f64) -> Result<Agreement, St
     let slack = slack * (bounds.1 - bounds.0).length();
     let borders = borders(scene, camera);
     let strokes = strokes(Scene::new(scene.mesh().clone()), camera);
-    let world = World::new(scene, camera);
+    let world = SightLines::new(scene, camera);
     let mut found = Agreement::default();
     let long = |[a, b]: &&Segment| a.distance(*b) > 4.0 * slack;
     for point in borders.iter().filter(long).flat_map(|&border| points(border)) {

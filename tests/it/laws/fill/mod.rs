@@ -4,7 +4,6 @@ mod borders;
 mod colors;
 mod counts;
 mod heaps;
-mod judge;
 mod regions;
 mod warnock;
 

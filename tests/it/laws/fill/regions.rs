@@ -1,6 +1,7 @@
 //! Regions as exact polygons: known corners, areas.
 
 use super::built;
+use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{Model, Scene as TestScene, number_of_scenes, orthographic, random};
 use glam::DVec2;
 use hiddenline::engines::face::images::Images;
@@ -50,4 +51,17 @@ fn areas_of_regions_sum_to_that_of_all_images() {
         assert!(error < 1000.0, "seed {seed}: {sum} instead of {all}, {error} steps × diagonal");
     }
     eprintln!("largest error of area: {largest} steps × diagonal");
+}
+
+#[test]
+fn regions_show_what_sight_lines_meet() {
+    let n = number_of_scenes(300);
+    let mut total = 0;
+    for seed in 0..n {
+        let (scene, camera) = built(&random(seed));
+        let painting = solve(&scene, &camera).unwrap().0;
+        let judged = SightLines::new(&scene, &camera).judge(&painting, 13, |_| false);
+        total += judged.unwrap_or_else(|problem| panic!("seed {seed}: {problem}")).0;
+    }
+    assert!(total > 80 * n as u32, "only {total} points judged");
 }

@@ -1,10 +1,10 @@
 //! Windows of the image: the known picture, and agreement with exact regions.
 
-use super::judge::judged;
 use super::regions::warnocks_pair;
 use super::{built, painted};
 use crate::laws::image::face;
 use crate::models;
+use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{Model, number_of_scenes, orthographic, random};
 use glam::{DVec2, dvec2};
 use hiddenline::camera::framing::Framing;
@@ -100,7 +100,9 @@ fn windows_show_what_rays_meet_except_near_borders() {
             // Where a face is thinner than a leaf there may be no border near.
             let exact = weiler_atherton::solve(&scene, &camera).unwrap().0;
             let near = |at: DVec2| painted(&exact, at).1 <= 1.5 * leaf;
-            total += judged(&name, (&scene, &camera), &painting, 13, near);
+            let lines = SightLines::new(&scene, &camera);
+            let judged = lines.judge(&painting, 13, |at| near(at) || !lines.is_clear(at));
+            total += judged.unwrap_or_else(|problem| panic!("{name}: {problem}")).0;
         }
     }
     eprintln!("{total} points judged");

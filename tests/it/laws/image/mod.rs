@@ -2,8 +2,8 @@
 
 mod a_buffer;
 mod agreement;
-mod judge;
 mod shades;
+mod sight_lines;
 mod strokes;
 mod warnock;
 
