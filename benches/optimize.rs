@@ -2,8 +2,8 @@
 
 use divan::Bencher;
 use glam::{DVec2, dvec2};
-use hiddenline::optimize::{Effort, Options, optimize_lines, order};
-use hiddenline::plot::Polylines;
+use hiddenline::stages::optimize::{Effort, Options, optimize_lines, order};
+use hiddenline::stages::plot::Polylines;
 
 fn main() {
     divan::main();

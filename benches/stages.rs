@@ -10,20 +10,20 @@ use divan::{Bencher, black_box};
 use glam::{DVec3, dvec3};
 use libm::{cos, sin};
 
-use hiddenline::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
-use hiddenline::chain::{ChainOptions, chain};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::draw::HiddenLines;
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::image::raster::Corners;
-use hiddenline::engines::image::{self, PixelMap, Raster};
-use hiddenline::model::mesh::Mesh;
-use hiddenline::model::scene::Scene;
-use hiddenline::model::topology::Topology;
-use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
-use hiddenline::read::{ModelFormat, read_bytes};
-use hiddenline::strokes::StrokeKind;
-use hiddenline::write::svg::{self, StrokeElement};
+use hiddenline::stages::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
+use hiddenline::stages::chain::{ChainOptions, chain};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::draw::HiddenLines;
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::image::raster::Corners;
+use hiddenline::stages::engines::image::{self, PixelMap, Raster};
+use hiddenline::stages::model::mesh::Mesh;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::model::topology::Topology;
+use hiddenline::stages::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::stages::read::{ModelFormat, read_bytes};
+use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::write::svg::{self, StrokeElement};
 
 fn main() {
     divan::main();

@@ -2,11 +2,11 @@
 
 use divan::Bencher;
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::chain::grid_lines::{Lines, strokes};
-use hiddenline::engines::surface::{CellOrder, max_min};
-use hiddenline::surface::Grid;
-use hiddenline::surface::formula::{Formula, Variables};
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::chain::grid_lines::{Lines, strokes};
+use hiddenline::stages::engines::surface::{CellOrder, max_min};
+use hiddenline::stages::surface::Grid;
+use hiddenline::stages::surface::formula::{Formula, Variables};
 
 const SIZES: [usize; 4] = [150, 500, 1000, 2000];
 

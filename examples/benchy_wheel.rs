@@ -5,11 +5,11 @@ mod sheet;
 
 use std::path::Path;
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::draw::{DrawOptions, HiddenLines};
-use hiddenline::page::PageOptions;
-use hiddenline::plot::Plot;
-use hiddenline::read::read_file;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::draw::{DrawOptions, HiddenLines};
+use hiddenline::stages::page::PageOptions;
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::read::read_file;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -21,7 +21,7 @@ pub(crate) fn plot() -> Result<Plot> {
     Sheet {
         title: "Wheel of a 3DBenchy",
         mesh,
-        framing: Framing { standpoint, ..Framing::default() },
+        framing: View { standpoint, ..View::default() },
         draw: DrawOptions { hidden: HiddenLines::Dashed, ..DrawOptions::default() },
         page: PageOptions::default(),
     }

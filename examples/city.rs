@@ -5,11 +5,11 @@ mod sheet;
 
 use glam::{DVec3, dvec3};
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::draw::DrawOptions;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::page::{PageOptions, Placement};
-use hiddenline::plot::Plot;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::draw::DrawOptions;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::page::{PageOptions, Placement};
+use hiddenline::stages::plot::Plot;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -63,11 +63,11 @@ fn city() -> Result<Mesh> {
 }
 
 pub(crate) fn plot() -> Result<Plot> {
-    let framing = Framing {
+    let framing = View {
         standpoint: Standpoint::Eye(dvec3(8.5, -13.5, 8.5)),
         target: Some(dvec3(-0.5, 0.0, 1.5)),
         fov_deg: 40.0,
-        ..Framing::default()
+        ..View::default()
     };
     Sheet {
         title: "A city",

@@ -4,14 +4,14 @@ mod plots;
 
 use std::path::Path;
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::model::arrange::{Arrangement, Pose, UpAxis};
-use hiddenline::model::scene::Scene;
-use hiddenline::page::{Page, PageOptions};
-use hiddenline::plot::Plot;
-use hiddenline::read::read_file;
-use hiddenline::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, fill};
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::page::{Page, PageOptions};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::read::read_file;
+use hiddenline::stages::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, fill};
 
 use plots::{Result, plot_options, save};
 
@@ -31,7 +31,7 @@ pub(crate) fn plot() -> Result<Plot> {
     let (mesh, _) = upright.arrange(vec![(model.mesh, Pose::default())])?;
     let standpoint =
         Standpoint::Angles { azimuth_deg: 215.0, elevation_deg: 14.0, distance: Some(4.5) };
-    let framing = Framing { standpoint, ..Framing::default() };
+    let framing = View { standpoint, ..View::default() };
     let camera = framing.camera(mesh.bounds().unwrap_or_default())?;
     let scene = Scene::new(mesh);
     let palette = Some(Palette::Inks(INKS.to_vec()));

@@ -5,11 +5,11 @@ mod sheet;
 
 use glam::DVec3;
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::draw::DrawOptions;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::page::PageOptions;
-use hiddenline::plot::Plot;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::draw::DrawOptions;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::page::PageOptions;
+use hiddenline::stages::plot::Plot;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -62,7 +62,7 @@ pub(crate) fn plot() -> Result<Plot> {
     Sheet {
         title: "Menger's sponge",
         mesh: sponge()?,
-        framing: Framing { standpoint, ..Framing::default() },
+        framing: View { standpoint, ..View::default() },
         draw: DrawOptions::default(),
         page: PageOptions::default(),
     }

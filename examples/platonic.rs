@@ -5,11 +5,11 @@ mod sheet;
 
 use glam::{DQuat, DVec3, dvec3};
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::draw::{DrawOptions, HiddenLines};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::page::{PageOptions, Paper};
-use hiddenline::plot::Plot;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::draw::{DrawOptions, HiddenLines};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::page::{PageOptions, Paper};
+use hiddenline::stages::plot::Plot;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -88,7 +88,7 @@ pub(crate) fn plot() -> Result<Plot> {
     Sheet {
         title: "The regular solids",
         mesh: solids()?,
-        framing: Framing { standpoint, ..Framing::default() },
+        framing: View { standpoint, ..View::default() },
         draw: DrawOptions { hidden: HiddenLines::Dashed, ..DrawOptions::default() },
         page: PageOptions { paper, ..PageOptions::default() },
     }

@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 use glam::{DVec3, dvec3};
 use libm::{cos, sin};
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::draw::DrawOptions;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::page::{PageOptions, Placement};
-use hiddenline::plot::Plot;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::draw::DrawOptions;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::page::{PageOptions, Placement};
+use hiddenline::stages::plot::Plot;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -48,11 +48,11 @@ fn stair() -> Result<Mesh> {
 
 pub(crate) fn plot() -> Result<Plot> {
     let top = RISE * f64::from(STEPS);
-    let framing = Framing {
+    let framing = View {
         standpoint: Standpoint::Eye(dvec3(0.0, 0.0, top + 1.4)),
         target: Some(dvec3(0.06, -0.08, 0.0)),
         fov_deg: 50.0,
-        ..Framing::default()
+        ..View::default()
     };
     Sheet {
         title: "A spiral staircase",

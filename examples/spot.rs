@@ -5,13 +5,13 @@ mod sheet;
 
 use std::path::Path;
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::DrawOptions;
-use hiddenline::model::arrange::{Arrangement, Pose, UpAxis};
-use hiddenline::page::PageOptions;
-use hiddenline::plot::Plot;
-use hiddenline::read::read_file;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::DrawOptions;
+use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::stages::page::PageOptions;
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::read::read_file;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -26,7 +26,7 @@ pub(crate) fn plot() -> Result<Plot> {
     Sheet {
         title: "Spot",
         mesh,
-        framing: Framing { standpoint, ..Framing::default() },
+        framing: View { standpoint, ..View::default() },
         draw: DrawOptions { lines: LineSelection::all_edges(), ..DrawOptions::default() },
         page: PageOptions::default(),
     }

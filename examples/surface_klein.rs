@@ -6,9 +6,9 @@ mod plots;
 mod viewpoint;
 
 use glam::DVec3;
-use hiddenline::plot::Plot;
-use hiddenline::surface::evenly;
-use hiddenline::surface::formula::{Formula, Variables};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::evenly;
+use hiddenline::stages::surface::formula::{Formula, Variables};
 
 use parameter_lines::parametric_plot;
 use plots::{Result, save};

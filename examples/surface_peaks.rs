@@ -4,14 +4,14 @@ mod plots;
 
 use glam::dvec3;
 
-use hiddenline::axes::{Titles, axes};
-use hiddenline::camera::framing::Framing;
-use hiddenline::chain::grid_lines::{Lines, strokes};
-use hiddenline::engines::surface::{CellOrder, max_min};
-use hiddenline::page::{Page, PageOptions};
-use hiddenline::plot::Plot;
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{Grid, lattice_extent};
+use hiddenline::stages::axes::{Titles, axes};
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::chain::grid_lines::{Lines, strokes};
+use hiddenline::stages::engines::surface::{CellOrder, max_min};
+use hiddenline::stages::page::{Page, PageOptions};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{Grid, lattice_extent};
 
 use plots::{Result, plot_options, save};
 
@@ -28,7 +28,7 @@ pub(crate) fn plot() -> Result<Plot> {
     grid.scale_heights(Z_FACTOR);
     let (low, high) = grid.heights().unwrap_or_default();
     let bounds = (dvec3(-3.0, -3.0, low), dvec3(3.0, 3.0, high));
-    let camera = Framing::default().camera(bounds)?;
+    let camera = View::default().camera(bounds)?;
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows)?;
     let mut drawing = strokes(&grid, &pieces, &camera, &Lines { every: 5, ..Lines::default() });
     let titles = Titles { drawing: "Peaks".into(), ..Titles::default() };

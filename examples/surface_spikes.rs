@@ -4,9 +4,9 @@ mod lined_surface;
 mod plots;
 mod viewpoint;
 
-use hiddenline::plot::Plot;
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{Grid, LinedMesh};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{Grid, LinedMesh};
 
 use lined_surface::{lined_plot, net};
 use plots::{Result, save};

@@ -4,8 +4,8 @@ mod lined_surface;
 mod plots;
 mod viewpoint;
 
-use hiddenline::plot::Plot;
-use hiddenline::surface::{Grid, LinedMesh, evenly};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::{Grid, LinedMesh, evenly};
 
 use lined_surface::{lined_plot, net};
 use plots::{Result, save};

@@ -6,8 +6,8 @@ mod plots;
 mod viewpoint;
 
 use glam::DVec3;
-use hiddenline::plot::Plot;
-use hiddenline::surface::evenly;
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::evenly;
 
 use parameter_lines::parametric_plot;
 use plots::{Result, save};

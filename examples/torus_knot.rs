@@ -8,12 +8,12 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use libm::{cos, sin};
 
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::DrawOptions;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::page::PageOptions;
-use hiddenline::plot::Plot;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::DrawOptions;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::page::PageOptions;
+use hiddenline::stages::plot::Plot;
 
 use plots::{Result, save};
 use sheet::Sheet;
@@ -57,7 +57,7 @@ pub(crate) fn plot() -> Result<Plot> {
     Sheet {
         title: "A knotted tube",
         mesh: tube()?,
-        framing: Framing { standpoint, ..Framing::default() },
+        framing: View { standpoint, ..View::default() },
         draw: DrawOptions { lines: LineSelection::all_edges(), ..DrawOptions::default() },
         page: PageOptions::default(),
     }

@@ -18,7 +18,7 @@ mod pen_path;
 use crate::classify::ViewedScene;
 use crate::engines::edge::outline::Outline;
 use crate::engines::visibility::{Span, Visibility};
-use crate::strokes::{Drawing, StrokeKind};
+use crate::strokes::{StrokeKind, Strokes};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -68,9 +68,9 @@ pub fn chain(
     visibility: &Visibility,
     outline: Option<&Outline>,
     options: &ChainOptions,
-) -> Drawing {
+) -> Strokes {
     let pieces = pieces(view, visibility, outline, options);
-    let mut drawing = Drawing::default();
+    let mut drawing = Strokes::default();
     if options.exact {
         pieces.iter().for_each(|piece| push(&mut drawing, piece, &piece.points));
         return drawing;
@@ -101,7 +101,7 @@ pub fn chain(
     drawing
 }
 
-fn push(drawing: &mut Drawing, first: &Piece, points: &[DVec2]) {
+fn push(drawing: &mut Strokes, first: &Piece, points: &[DVec2]) {
     if first.outline {
         drawing.push_outline(first.kind, points.iter().copied());
     } else {
@@ -175,7 +175,7 @@ fn pieces(
 ) -> Vec<Piece> {
     const CHUNK: usize = 4096;
     let parts: Vec<Vec<Piece>> = view
-        .drawn()
+        .selected()
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, drawn)| {

@@ -104,7 +104,7 @@ impl Default for LineSelection {
 
 /// An edge that is to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct DrawnEdge {
+pub struct SelectedLine {
     /// Its number among the lines of the view; see [`ViewedScene::line`].
     pub edge: u32,
     /// Why it is drawn.
@@ -163,7 +163,7 @@ pub struct ViewedScene<'a> {
     triangle_turns: Vec<Sign>,
     /// Empty when every face is a triangle, since the turns then say it all.
     facings: Vec<Sign>,
-    drawn: Vec<DrawnEdge>,
+    drawn: Vec<SelectedLine>,
     /// Those of `drawn` of which only the outline is wanted.
     only_outline: Vec<u32>,
     near_plane_cuts: bool,
@@ -248,7 +248,7 @@ impl<'a> ViewedScene<'a> {
     /// They need not be in order. An edge that is given more than once bears the last of its kinds
     /// in the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when there
     /// is no such edge. O(faces + edges log edges).
-    pub fn with_edges(scene: &'a Scene, camera: &Camera, mut edges: Vec<DrawnEdge>) -> Self {
+    pub fn with_edges(scene: &'a Scene, camera: &Camera, mut edges: Vec<SelectedLine>) -> Self {
         let mut view = Self::new(scene, camera, LineSelection::NONE, DEFAULT_CREASE_DEG);
         edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
         edges.dedup_by_key(|drawn| drawn.edge);
@@ -305,12 +305,12 @@ impl<'a> ViewedScene<'a> {
 
     /// What to draw, by number: edges in the order of the topology, then the other lines of the scene,
     /// then the segments of the view's own.
-    pub fn drawn(&self) -> &[DrawnEdge] {
+    pub fn selected(&self) -> &[SelectedLine] {
         &self.drawn
     }
 
     /// Whether an edge is among the drawn ones. O(log drawn).
-    pub fn is_drawn(&self, edge: u32) -> bool {
+    pub fn is_selected(&self, edge: u32) -> bool {
         self.drawn.binary_search_by_key(&edge, |drawn| drawn.edge).is_ok()
     }
 
@@ -325,14 +325,14 @@ impl<'a> ViewedScene<'a> {
     }
 
     /// The edges to draw, each with whether all of it is wanted and not only the outline.
-    fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<(DrawnEdge, bool)> {
+    fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<(SelectedLine, bool)> {
         let n_edges = self.scene.topology().edges().len() as u32;
         let creases = Creases::new(self.scene, lines, crease_deg);
         let of_outline = LineSelection::NONE
             .with(StrokeKind::Silhouette)
             .with(StrokeKind::Boundary)
             .with(StrokeKind::Nonmanifold);
-        let mut drawn: Vec<(DrawnEdge, bool)> = (0..n_edges)
+        let mut drawn: Vec<(SelectedLine, bool)> = (0..n_edges)
             .into_par_iter()
             .with_min_len(4096)
             .filter_map(|edge| {
@@ -342,7 +342,7 @@ impl<'a> ViewedScene<'a> {
                     outlined.then(|| self.kind(edge, of_outline, &creases))?
                 })?;
                 let [a, b] = self.scene.topology().edge(edge);
-                let drawn = (DrawnEdge { edge, kind }, whole.is_some());
+                let drawn = (SelectedLine { edge, kind }, whole.is_some());
                 (!self.sight.same_image(a, b)).then_some(drawn)
             })
             .collect();
@@ -352,7 +352,7 @@ impl<'a> ViewedScene<'a> {
             let first = self.scene.n_lines() as u32;
             let segments = (first..).zip(own.ends.iter().zip(&own.kinds));
             let seen = segments.filter(|(_, (ends, _))| !self.sight.same_image(ends[0], ends[1]));
-            drawn.extend(seen.map(|(edge, (_, &kind))| (DrawnEdge { edge, kind }, true)));
+            drawn.extend(seen.map(|(edge, (_, &kind))| (SelectedLine { edge, kind }, true)));
         }
         drawn
     }
@@ -362,8 +362,8 @@ impl<'a> ViewedScene<'a> {
     fn other_lines(
         &self,
         lines: LineSelection,
-        drawn: &[(DrawnEdge, bool)],
-    ) -> Vec<(DrawnEdge, bool)> {
+        drawn: &[(SelectedLine, bool)],
+    ) -> Vec<(SelectedLine, bool)> {
         let is_drawn =
             |edge: u32| drawn.binary_search_by_key(&edge, |(drawn, _)| drawn.edge).is_ok();
         let is_front = |triangle: u32| self.triangle_turns[triangle as usize] == Sign::Positive;
@@ -390,7 +390,7 @@ impl<'a> ViewedScene<'a> {
                 let kind = kind(line.source)?;
                 let is_whole = has_folds || !matches!(line.source, LineSource::Bend(_));
                 let is_seen = !self.sight.same_image(line.ends[0], line.ends[1]);
-                is_seen.then_some((DrawnEdge { edge, kind }, is_whole))
+                is_seen.then_some((SelectedLine { edge, kind }, is_whole))
             })
             .collect()
     }

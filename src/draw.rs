@@ -7,7 +7,7 @@ use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{Counts, Engine, Settings, outline, solve};
 use crate::model::scene::Scene;
-use crate::strokes::Drawing;
+use crate::strokes::Strokes;
 use crate::timing::{Seconds, timed};
 
 /// The default contact tolerance as a fraction of the largest coordinate: twice the spacing of
@@ -82,6 +82,42 @@ impl Default for DrawOptions {
 }
 
 impl DrawOptions {
+    /// Which kinds of line.
+    #[must_use]
+    pub fn lines(self, lines: LineSelection) -> Self {
+        Self { lines, ..self }
+    }
+
+    /// Every edge of the mesh.
+    #[must_use]
+    pub fn all_edges(self) -> Self {
+        self.lines(LineSelection::all_edges())
+    }
+
+    /// The angle in degrees above which faces that meet make a crease.
+    #[must_use]
+    pub fn crease_deg(self, crease_deg: f64) -> Self {
+        Self { crease_deg, ..self }
+    }
+
+    /// What becomes of hidden lines.
+    #[must_use]
+    pub fn hidden(self, hidden: HiddenLines) -> Self {
+        Self { hidden, ..self }
+    }
+
+    /// Which visible-line algorithm; all give the same drawing.
+    #[must_use]
+    pub fn engine(self, engine: Engine) -> Self {
+        Self { engine, ..self }
+    }
+
+    /// One two-point stroke for each maximal visible interval, nothing tidied.
+    #[must_use]
+    pub fn exact(self) -> Self {
+        Self { exact: true, ..self }
+    }
+
     fn settings(&self, scene: &Scene) -> Settings {
         let default = || {
             let (low, high) = scene.mesh().bounds().unwrap_or_default();
@@ -103,9 +139,9 @@ impl DrawOptions {
 
 /// A drawing, and what it took to make it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct DrawOutput {
     /// The strokes.
-    pub drawing: Drawing,
+    pub drawing: Strokes,
     /// The engine that found what is hidden, by its name on the command line.
     pub engine: &'static str,
     /// How many edges and other lines of the scene were selected.
@@ -126,7 +162,7 @@ pub struct Drawn {
 /// `mm_per_unit` is the number of millimeters on paper for one image unit, which the page knows from
 /// the scene's [`Extent`](crate::extent::Extent) alone. It turns the shortest stroke into a length in
 /// the image; where that is zero it does not matter.
-pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: f64) -> Drawn {
+pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: f64) -> DrawOutput {
     let mut seconds = Seconds::default();
     let view = timed(&mut seconds.classify, || {
         ViewedScene::new(scene, camera, options.lines, options.crease_deg)
@@ -145,6 +181,6 @@ pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: 
     };
     let drawing =
         timed(&mut seconds.strokes, || chain(&view, &visibility, outline.as_ref(), &chaining));
-    let (n_lines, n_exact) = (view.drawn().len(), view.sight().n_exact());
-    Drawn { drawing, engine, n_lines, counts, n_exact, seconds }
+    let (n_lines, n_exact) = (view.selected().len(), view.sight().n_exact());
+    DrawOutput { drawing, engine, n_lines, counts, n_exact, seconds }
 }

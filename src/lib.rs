@@ -1,5 +1,53 @@
 //! Exact hidden-line drawings of 3D models and surfaces, for print and pen plotters.
 //!
+//! ```no_run
+//! use hiddenline::{DrawOptions, Paper, Scene, View};
+//!
+//! let scene = Scene::open("cow.obj")?;
+//! let drawing = scene.draw(&View::isometric(), &DrawOptions::default());
+//! drawing.on(Paper::A4)?.optimized().save("cow.svg")?;
+//! # Ok::<(), hiddenline::Error>(())
+//! ```
+//!
+//! A [`Scene`] is read once and drawn from any number of views. A [`Drawing`] goes on paper, and the
+//! [`Sheet`] into a file: SVG, PDF, DXF, PNG, HPGL or G-code. The program `hiddenline` does the same from
+//! the command line.
+//!
+//! Scenes come from files, or from arrays in memory; strokes can be taken as points:
+//!
+//! ```
+//! use hiddenline::{DrawOptions, HiddenLines, Paper, Scene, View};
+//! use glam::dvec3;
+//!
+//! let corners = [dvec3(0., 0., 0.), dvec3(1., 0., 0.), dvec3(0., 1., 0.), dvec3(0., 0., 1.)];
+//! let scene = Scene::from_faces(&corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])?;
+//! let lines = DrawOptions::default().hidden(HiddenLines::Dashed);
+//! let (strokes, page) = scene.draw(&View::from_angles(30., 25.), &lines).strokes(Paper::A4)?;
+//! for stroke in strokes.iter() {
+//!     let mm = stroke.points.iter().map(|&p| page.page_from_image.transform_point2(p));
+//!     println!("{} {:?}", stroke.kind.name(), mm.collect::<Vec<_>>());
+//! }
+//! # Ok::<(), hiddenline::Error>(())
+//! ```
+//!
+//! Many views of one scene are drawn in parallel:
+//!
+//! ```
+//! use hiddenline::{DrawOptions, Paper, Scene, View};
+//!
+//! let scene = Scene::open("examples/models/benchy_wheel.stl")?;
+//! let views = [View::front(), View::right(), View::isometric()];
+//! let sheets = scene.draw_views(&views, &DrawOptions::default(), Paper::A4)?;
+//! for (n, sheet) in sheets.iter().enumerate() {
+//!     # if false {
+//!     sheet.save(format!("wheel-{n}.svg"))?;
+//!     # }
+//! }
+//! # Ok::<(), hiddenline::Error>(())
+//! ```
+//!
+//! # How it works
+//!
 //! ```text
 //!  model files           formulas, height files
 //!       │                        │
@@ -29,60 +77,101 @@
 //!                               write ─► bytes
 //! ```
 //!
-//! [`draw`] runs the stages from scene to strokes. The page is placed first: it needs only the
-//! [`extent`] of the scene, so lengths on paper are known before any line is chosen. [`predicates`]
-//! make every decision on the way. [`engines::image`] finds the face that each pixel shows;
-//! [`shading::preview`] shades it. To read the code, take the modules in the order below: no module
+//! `draw` runs the stages from scene to strokes. The page is placed first: it needs only the
+//! `extent` of the scene, so lengths on paper are known before any line is chosen. `predicates`
+//! make every decision on the way. `engines::image` finds the face that each pixel shows;
+//! `shading::preview` shades it. To read the code, take the modules in the order below: no module
 //! uses a later one.
 //!
 //! # What is exact
 //!
 //! Vertices as read (`f64`) *are* the scene. Every decision — which side, in front or not, front
 //! or back, the order of two cuts — is the sign of a polynomial in those numbers and is decided
-//! exactly by [`predicates`]; nothing is compared against a tolerance. Only end points of visible
+//! exactly by `predicates`; nothing is compared against a tolerance. Only end points of visible
 //! pieces and image coordinates are rounded, each once. Points where faces cross are not vertices, but
 //! they enter decisions unrounded too.
 //!
 //! # Units and frames
 //!
-//! World: model units, right-handed, z up. Image: see [`camera`]. Page: millimeters, see [`plot`].
+//! World: model units, right-handed, z up. Image: see `camera`. Page: millimeters, see `plot`.
 //! Angles are in radians unless a name ends in `_deg`.
 
-pub mod timing;
+/// The stages, in the order of the data flow. They serve the program and the tests of this crate
+/// and may change at any time.
+#[doc(hidden)]
+#[path = ""]
+pub mod stages {
+    pub mod timing;
 
-pub mod camera;
+    pub mod camera;
 
-pub mod predicates;
+    pub mod predicates;
 
-pub mod extent;
+    pub mod extent;
 
-pub mod model;
+    pub mod model;
 
-pub mod read;
+    pub mod read;
 
-pub mod strokes;
+    pub mod strokes;
 
-pub mod classify;
+    pub mod classify;
 
-pub mod surface;
+    pub mod surface;
 
-pub mod engines;
+    pub mod engines;
 
-pub mod chain;
+    pub mod chain;
 
-pub mod axes;
+    pub mod axes;
 
-pub mod draw;
+    pub mod draw;
 
-pub mod plot;
+    pub mod plot;
 
-pub mod shading;
+    pub mod shading;
 
-pub mod page;
+    pub mod page;
 
-pub mod optimize;
+    pub mod optimize;
 
-#[cfg(feature = "svg-in")]
-pub mod read_svg;
+    #[cfg(feature = "svg-in")]
+    pub mod read_svg;
 
-pub mod write;
+    pub mod write;
+
+    pub mod api;
+}
+
+use stages::{
+    api, camera, chain, classify, draw, engines, extent, model, optimize, page, plot, predicates,
+    read, shading, strokes, surface, timing, write,
+};
+
+// A scene.
+pub use api::{Error, SceneBuilder};
+pub use model::arrange::UpAxis;
+pub use model::mesh::Mesh;
+pub use model::scene::Scene;
+pub use read::ModelFormat;
+
+// A view of it.
+pub use camera::Camera;
+pub use camera::framing::{NamedView, View};
+
+// The lines.
+pub use api::Drawing;
+pub use classify::LineSelection;
+pub use draw::{DrawOptions, HiddenLines};
+pub use engines::edge::Engine;
+pub use shading::fill::{FillOptions, Palette};
+pub use strokes::{Stroke, StrokeKind, Strokes};
+
+// The paper.
+pub use api::Sheet;
+pub use page::{Dash, Orientation, Page, PageOptions, Paper, PenRole, PenRule, Placement};
+pub use plot::{Layer, Pen, Plot, Polylines};
+
+// The plotter.
+pub use optimize::{Effort, Options as OptimizeOptions};
+pub use write::{Format, Target};

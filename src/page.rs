@@ -27,11 +27,11 @@ use crate::extent::Extent;
 use crate::extent::window::Window;
 use crate::plot::{Layer, Pen, Plot};
 use crate::shading::fill::Filled;
-use crate::strokes::Drawing;
+use crate::strokes::Strokes;
 
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
-pub use self::pens::{Drawn, LayerControls, PenRule};
+pub use self::pens::{LayerControls, PenRole, PenRule};
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 
 /// Empty border of the page in millimeters, unless set otherwise.
@@ -92,6 +92,38 @@ impl Default for PageOptions {
     }
 }
 
+impl PageOptions {
+    /// The whole sheet but for this border, in millimeters.
+    #[must_use]
+    pub fn margin_mm(self, margin_mm: f64) -> Self {
+        Self { margin_mm, ..self }
+    }
+
+    /// At least as wide as high.
+    #[must_use]
+    pub fn landscape(self) -> Self {
+        Self { orientation: Some(Orientation::Landscape), ..self }
+    }
+
+    /// At least as high as wide.
+    #[must_use]
+    pub fn portrait(self) -> Self {
+        Self { orientation: Some(Orientation::Portrait), ..self }
+    }
+
+    /// At a scale instead of fitted: this many millimeters on paper for one model unit.
+    #[must_use]
+    pub fn scale(self, mm_per_unit: f64) -> Self {
+        Self { placement: Placement::Scale { mm_per_unit }, ..self }
+    }
+}
+
+impl From<Paper> for PageOptions {
+    fn from(paper: Paper) -> Self {
+        Self { paper, ..Self::default() }
+    }
+}
+
 /// Why a drawing cannot be placed on a page.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PageError {
@@ -142,6 +174,19 @@ pub struct PlotOptions {
     pub title: String,
     /// The command that made it; empty for none.
     pub source: String,
+}
+
+impl Default for PlotOptions {
+    fn default() -> Self {
+        Self {
+            pen_width_mm: DEFAULT_PEN_WIDTH_MM,
+            pens: Vec::new(),
+            hidden: HiddenLines::default(),
+            dash: Dash::default(),
+            title: String::new(),
+            source: String::new(),
+        }
+    }
 }
 
 /// A plot, and whether all of the drawing is on it.
@@ -230,7 +275,7 @@ impl Page {
     /// of its kind, and a hidden one by the pen of its level, if there are rules for these; all others
     /// by the one of visible or hidden strokes: unless there are rules, visible ones are
     /// layer 1 and hidden ones, if drawn, layer 2. Strokes keep their order. O(points + dashes).
-    pub fn plot(&self, drawing: &Drawing, options: PlotOptions) -> PlacedPlot {
+    pub fn plot(&self, drawing: &Strokes, options: PlotOptions) -> PlacedPlot {
         let window = self.window();
         let mut holder = pens::Holder::new(&options);
         let mut cropped = false;

@@ -57,7 +57,7 @@ impl StrokeKind {
     }
 }
 
-/// One polyline of a [`Drawing`].
+/// One polyline of a [`Strokes`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke<'a> {
     /// Why it is drawn.
@@ -75,7 +75,7 @@ pub struct Stroke<'a> {
 
 /// Strokes in image coordinates (see [`crate::camera`]), in a fixed order.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Drawing {
+pub struct Strokes {
     points: Vec<DVec2>,
     heads: Vec<Head>,
 }
@@ -90,7 +90,7 @@ struct Head {
     end: u32,
 }
 
-impl Drawing {
+impl Strokes {
     /// Appends a stroke. One of fewer than two points is left out.
     pub fn push(&mut self, kind: StrokeKind, qi: u32, points: impl IntoIterator<Item = DVec2>) {
         self.push_with(kind, qi, false, points);

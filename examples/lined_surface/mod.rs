@@ -1,12 +1,12 @@
 //! A surface by its lines, closed by its folds, on a sheet of the usual size.
 
-use hiddenline::camera::framing::Framing;
-use hiddenline::draw::DEFAULT_SHORTEST_STROKE_MM;
-use hiddenline::draw::meshed::{MeshedOptions, draw};
-use hiddenline::engines::edge::Engine;
-use hiddenline::page::{Page, PageOptions};
-use hiddenline::plot::Plot;
-use hiddenline::surface::{LatticeLines, LinedMesh};
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::draw::DEFAULT_SHORTEST_STROKE_MM;
+use hiddenline::stages::draw::meshed::{MeshedOptions, draw};
+use hiddenline::stages::engines::edge::Engine;
+use hiddenline::stages::page::{Page, PageOptions};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::{LatticeLines, LinedMesh};
 
 use super::plots::{Result, plot_options};
 
@@ -16,7 +16,7 @@ pub(crate) fn net(every: usize) -> LatticeLines {
 }
 
 /// The page with nothing around the surface.
-pub(crate) fn lined_plot(title: &str, mesh: LinedMesh, framing: Framing) -> Result<Plot> {
+pub(crate) fn lined_plot(title: &str, mesh: LinedMesh, framing: View) -> Result<Plot> {
     let surface = mesh.into_scene()?;
     let camera = framing.camera(surface.scene.mesh().bounds().unwrap_or_default())?;
     let extent = surface.scene.extent(&camera);

@@ -1,9 +1,9 @@
 //! A surface in space on a sheet of the usual size.
 
 use glam::DVec3;
-use hiddenline::camera::framing::Framing;
-use hiddenline::plot::Plot;
-use hiddenline::surface::{LinedMesh, close_seams};
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::surface::{LinedMesh, close_seams};
 
 use super::lined_surface::{lined_plot, net};
 use super::plots::Result;
@@ -14,7 +14,7 @@ pub(crate) fn parametric_plot(
     title: &str,
     [us, vs]: [Vec<f64>; 2],
     every: usize,
-    framing: Framing,
+    framing: View,
     point: impl Fn(f64, f64) -> DVec3,
 ) -> Result<Plot> {
     let mut points: Vec<DVec3> = vs

@@ -5,11 +5,11 @@ use std::fs::{File, create_dir_all};
 use std::io::BufWriter;
 use std::path::Path;
 
-use hiddenline::draw::HiddenLines;
-use hiddenline::page::{Dash, PlotOptions};
-use hiddenline::plot::Plot;
-use hiddenline::write::png::{self, Resolution};
-use hiddenline::write::svg::{self, StrokeElement};
+use hiddenline::stages::draw::HiddenLines;
+use hiddenline::stages::page::{Dash, PlotOptions};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::write::png::{self, Resolution};
+use hiddenline::stages::write::svg::{self, StrokeElement};
 
 pub(crate) type Result<T> = std::result::Result<T, Box<dyn Error>>;
 

@@ -1,11 +1,11 @@
 //! A mesh on a sheet of paper.
 
-use hiddenline::camera::framing::Framing;
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::model::mesh::Mesh;
-use hiddenline::model::scene::Scene;
-use hiddenline::page::{Page, PageOptions, PlotOptions};
-use hiddenline::plot::Plot;
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::model::mesh::Mesh;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::page::{Page, PageOptions, PlotOptions};
+use hiddenline::stages::plot::Plot;
 
 use super::plots::{Result, plot_options};
 
@@ -13,7 +13,7 @@ use super::plots::{Result, plot_options};
 pub(crate) struct Sheet {
     pub(crate) title: &'static str,
     pub(crate) mesh: Mesh,
-    pub(crate) framing: Framing,
+    pub(crate) framing: View,
     pub(crate) draw: DrawOptions,
     pub(crate) page: PageOptions,
 }

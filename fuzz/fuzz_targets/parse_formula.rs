@@ -1,7 +1,7 @@
 //! Any text as a formula: an error with a column in the text or values, never a panic.
 #![no_main]
 
-use hiddenline::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::formula::{Formula, Variables};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

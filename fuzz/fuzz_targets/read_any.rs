@@ -1,7 +1,7 @@
 //! Any bytes under no telling name: the format is found by content, or refused.
 #![no_main]
 
-use hiddenline::read::read_bytes;
+use hiddenline::stages::read::read_bytes;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 //! Any bytes as a height file: an error or a sound grid, never a panic.
 #![no_main]
 
-use hiddenline::surface::{HeightOptions, read_heights};
+use hiddenline::stages::surface::{HeightOptions, read_heights};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 //! Any bytes as OBJ: an error or a sound mesh, never a panic.
 #![no_main]
 
-use hiddenline::read::{ModelFormat, read_bytes};
+use hiddenline::stages::read::{ModelFormat, read_bytes};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 //! Any text as scattered points: an error or triangles over them, never a panic.
 #![no_main]
 
-use hiddenline::surface::{Duplicates, ScatteredPoints, delaunay};
+use hiddenline::stages::surface::{Duplicates, ScatteredPoints, delaunay};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

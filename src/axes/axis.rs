@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::font::text;
 use super::ticks::ticks;
 use crate::camera::Camera;
-use crate::strokes::{Drawing, StrokeKind};
+use crate::strokes::{StrokeKind, Strokes};
 
 /// Length of ticks and space beside text, as a part of the height of numbers.
 const SPACE: f64 = 0.6;
@@ -63,13 +63,13 @@ impl Label {
     /// The box around its strokes.
     #[cfg(test)]
     pub(super) fn drawn_box(&self) -> (DVec2, DVec2) {
-        let mut drawing = Drawing::default();
+        let mut drawing = Strokes::default();
         self.draw(&mut drawing);
         drawing.bounds().unwrap_or((self.center, self.center))
     }
 
     /// Writes it with the middle of its capitals at the center.
-    fn draw(&self, drawing: &mut Drawing) {
+    fn draw(&self, drawing: &mut Strokes) {
         let (strokes, _) = text(&self.line, self.height);
         let corner = self.center - self.half_size;
         for stroke in strokes {
@@ -172,7 +172,7 @@ impl Laid {
         self.title = title;
     }
 
-    pub(super) fn draw(&self, drawing: &mut Drawing) {
+    pub(super) fn draw(&self, drawing: &mut Strokes) {
         drawing.push(StrokeKind::Axis, 0, self.ends);
         for (foot, tip, label) in &self.ticks {
             drawing.push(StrokeKind::Axis, 0, [*foot, *tip]);
@@ -187,6 +187,6 @@ impl Laid {
 }
 
 /// Writes a line with the middle of its capitals at `at`.
-pub(super) fn write_centered(drawing: &mut Drawing, line: &str, height: f64, at: DVec2) {
+pub(super) fn write_centered(drawing: &mut Strokes, line: &str, height: f64, at: DVec2) {
     Label::beside(line, height, at, DVec2::ZERO, 0.0).draw(drawing);
 }

@@ -20,7 +20,7 @@ use glam::{DVec2, DVec3, dvec2};
 use self::axis::{Axis, Laid, write_centered};
 use crate::camera::{Camera, Projection};
 use crate::extent::Extent;
-use crate::strokes::Drawing;
+use crate::strokes::Strokes;
 
 /// Height of numbers, as a part of the longer side of the box's image: 4.6 mm on A4 landscape.
 const TEXT_HEIGHT: f64 = 1.0 / 60.0;
@@ -52,8 +52,8 @@ pub fn axes(
     z_factor: f64,
     camera: &Camera,
     titles: &Titles,
-) -> Drawing {
-    let mut drawing = Drawing::default();
+) -> Strokes {
+    let mut drawing = Strokes::default();
     let Some((axes, (low, high), height)) = lay(bounds, z_factor, camera, titles) else {
         return drawing;
     };

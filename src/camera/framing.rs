@@ -105,7 +105,7 @@ impl ProjectionKind {
 
 /// A camera as asked for; what is `None` is chosen to suit the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Framing {
+pub struct View {
     /// From where.
     pub standpoint: Standpoint,
     /// At what: unless given, the middle of the scene's bounding box.
@@ -120,7 +120,7 @@ pub struct Framing {
     pub near: f64,
 }
 
-impl Default for Framing {
+impl Default for View {
     fn default() -> Self {
         Self {
             standpoint: Standpoint::Angles {
@@ -139,7 +139,7 @@ impl Default for Framing {
 
 /// Why a framing gives no camera.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-pub enum FramingError {
+pub enum ViewError {
     /// The distance is not a positive number.
     #[error("the distance must be above 0, not {0}")]
     Distance(f64),
@@ -156,18 +156,98 @@ pub enum FramingError {
     Camera(#[from] CameraError),
 }
 
-impl Framing {
+impl View {
+    /// A view with a name, orthographic unless changed.
+    pub fn named(view: NamedView) -> Self {
+        let standpoint = Standpoint::Named { view, distance: None };
+        Self { standpoint, ..Self::default() }
+    }
+
+    /// Along +y.
+    pub fn front() -> Self {
+        Self::named(NamedView::Front)
+    }
+
+    /// Along −x.
+    pub fn right() -> Self {
+        Self::named(NamedView::Right)
+    }
+
+    /// Downwards, with +y up on the page.
+    pub fn top() -> Self {
+        Self::named(NamedView::Top)
+    }
+
+    /// From the front right above; x, y and z equally foreshortened.
+    pub fn isometric() -> Self {
+        Self::named(NamedView::Isometric)
+    }
+
+    /// In perspective, from an azimuth (0 is in front, 90 to the right) and an elevation above the
+    /// horizontal, both in degrees, as far away as shows the whole scene.
+    pub fn from_angles(azimuth_deg: f64, elevation_deg: f64) -> Self {
+        let standpoint = Standpoint::Angles { azimuth_deg, elevation_deg, distance: None };
+        Self { standpoint, ..Self::default() }
+    }
+
+    /// In perspective, from a point, towards the middle of the scene.
+    pub fn from_eye(eye: DVec3) -> Self {
+        Self { standpoint: Standpoint::Eye(eye), ..Self::default() }
+    }
+
+    /// Looks at `target` instead of the middle of the scene.
+    #[must_use]
+    pub fn target(self, target: DVec3) -> Self {
+        Self { target: Some(target), ..self }
+    }
+
+    /// What is up on the page.
+    #[must_use]
+    pub fn up(self, up: DVec3) -> Self {
+        Self { up: Some(up), ..self }
+    }
+
+    /// In perspective.
+    #[must_use]
+    pub fn perspective(self) -> Self {
+        Self { projection: Some(ProjectionKind::Perspective), ..self }
+    }
+
+    /// In parallel projection.
+    #[must_use]
+    pub fn orthographic(self) -> Self {
+        Self { projection: Some(ProjectionKind::Orthographic), ..self }
+    }
+
+    /// Vertical field of view in degrees: a wide one stands near.
+    #[must_use]
+    pub fn fov_deg(self, fov_deg: f64) -> Self {
+        Self { fov_deg, ..self }
+    }
+
+    /// At a distance from the target, in model units, where the view has a direction only.
+    #[must_use]
+    pub fn distance(mut self, model_units: f64) -> Self {
+        match &mut self.standpoint {
+            Standpoint::Eye(_) => {}
+            Standpoint::Angles { distance, .. } | Standpoint::Named { distance, .. } => {
+                *distance = Some(model_units);
+            }
+        }
+        self
+    }
+
     /// The camera for a scene within `bounds`, its (lowest, highest) corner.
     ///
     /// # Errors
-    /// See [`FramingError`].
-    pub fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, FramingError> {
+    /// See [`ViewError`].
+    pub fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, ViewError> {
         let target = self.target.unwrap_or_else(|| middle(bounds));
         let eye = match self.standpoint {
             Standpoint::Eye(eye) => eye,
             Standpoint::Angles { azimuth_deg, elevation_deg, distance } => {
                 if !(azimuth_deg.is_finite() && elevation_deg.is_finite()) {
-                    return Err(FramingError::Angle);
+                    return Err(ViewError::Angle);
                 }
                 let towards_eye = direction(azimuth_deg, elevation_deg);
                 target + self.offset(towards_eye, target, distance, bounds)?
@@ -208,10 +288,10 @@ impl Framing {
         target: DVec3,
         distance: Option<f64>,
         bounds: (DVec3, DVec3),
-    ) -> Result<DVec3, FramingError> {
+    ) -> Result<DVec3, ViewError> {
         let distance = match distance {
             Some(distance) if distance > 0.0 && distance.is_finite() => distance,
-            Some(distance) => return Err(FramingError::Distance(distance)),
+            Some(distance) => return Err(ViewError::Distance(distance)),
             None => self.distance_that_shows(bounds, target)?,
         };
         let size = distance.max(target.abs().max_element());
@@ -224,7 +304,7 @@ impl Framing {
         &self,
         (low, high): (DVec3, DVec3),
         target: DVec3,
-    ) -> Result<f64, FramingError> {
+    ) -> Result<f64, ViewError> {
         let farthest = (high - target).abs().max((low - target).abs());
         let radius = farthest.length();
         let half_angle = self.fov_deg.clamp(0.0, 180.0).to_radians() / 2.0;
@@ -233,7 +313,7 @@ impl Framing {
         let rounded_up = (distance / step).ceil() * step;
         if !radius.is_finite() || distance.is_infinite() && half_angle > 0.0 {
             let largest = low.abs().max(high.abs()).max_element();
-            return Err(FramingError::TooLarge(largest));
+            return Err(ViewError::TooLarge(largest));
         }
         Ok(if rounded_up > 0.0 { rounded_up } else { 1.0 })
     }

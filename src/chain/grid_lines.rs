@@ -11,7 +11,7 @@ use crate::engines::surface::pieces::{LOWER, PARTLY, UPPER};
 use crate::engines::surface::{GridPieces, SurfaceSide, VisiblePiece};
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
-use crate::strokes::{Drawing, StrokeKind};
+use crate::strokes::{StrokeKind, Strokes};
 use crate::surface::Grid;
 
 /// Which grid lines are drawn.
@@ -39,7 +39,7 @@ impl Default for Lines {
 /// Draws the visible pieces. What lies nearer than the camera's near plane is cut off.
 ///
 /// O(edges), in parallel; the order of strokes does not depend on the number of threads.
-pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines) -> Drawing {
+pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines) -> Strokes {
     let projector = Projector::new(camera);
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let every = lines.every.max(1);
@@ -54,7 +54,7 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines)
         let line = |i| GridLine { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
         families.push(chosen(nx).map(line).collect());
     }
-    let mut drawing = Drawing::default();
+    let mut drawing = Strokes::default();
     for family in &families {
         let chains: Vec<Chains> =
             family.par_iter().map(|line| line.chains(grid, pieces, &projector, lines)).collect();

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DVec3;
-use hiddenline::camera::framing::{
-    DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, Framing, FramingError, NamedView, ProjectionKind,
-    Standpoint,
+use hiddenline::stages::camera::framing::{
+    DEFAULT_AZIMUTH_DEG, DEFAULT_ELEVATION_DEG, NamedView, ProjectionKind, Standpoint, View,
+    ViewError,
 };
-use hiddenline::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR};
-use hiddenline::write::json;
+use hiddenline::stages::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR};
+use hiddenline::stages::write::json;
 
 use super::choice::one_of;
 use super::paths::is_dash;
@@ -68,7 +68,7 @@ pub(super) enum ViewSource {
     /// A strokes file.
     File(PathBuf),
     /// Options.
-    Framing(Framing),
+    View(View),
 }
 
 impl CameraArgs {
@@ -85,7 +85,7 @@ impl CameraArgs {
                 distance: self.distance,
             },
         };
-        ViewSource::Framing(Framing {
+        ViewSource::View(View {
             standpoint,
             target: self.target,
             up: self.up,
@@ -101,7 +101,7 @@ impl ViewSource {
     pub(super) fn input(&self) -> Option<PathBuf> {
         match self {
             Self::File(path) => Some(path.clone()),
-            Self::Framing(_) => None,
+            Self::View(_) => None,
         }
     }
 
@@ -109,7 +109,7 @@ impl ViewSource {
     pub(super) fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, Box<dyn Error>> {
         match self {
             Self::File(path) => read_camera(path),
-            Self::Framing(framing) => {
+            Self::View(framing) => {
                 framing.camera(bounds).map_err(|error| with_remedy(&error).into())
             }
         }
@@ -117,10 +117,10 @@ impl ViewSource {
 }
 
 /// An error about the point of view, with the options that mend it.
-fn with_remedy(error: &FramingError) -> String {
+fn with_remedy(error: &ViewError) -> String {
     let remedy = match error {
-        FramingError::Camera(CameraError::UpParallel) => "; give another --up",
-        FramingError::Camera(CameraError::NoDirection | CameraError::TooFarApart) => {
+        ViewError::Camera(CameraError::UpParallel) => "; give another --up",
+        ViewError::Camera(CameraError::NoDirection | CameraError::TooFarApart) => {
             "; give another --eye or --target"
         }
         _ => "",

@@ -1,9 +1,9 @@
 //! Choices of the library on the command line: one parser for every enum with `ALL` and names.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use hiddenline::camera::framing::{NamedView, ProjectionKind};
-use hiddenline::write::Format;
-use hiddenline::write::svg::StrokeElement;
+use hiddenline::stages::camera::framing::{NamedView, ProjectionKind};
+use hiddenline::stages::write::Format;
+use hiddenline::stages::write::svg::StrokeElement;
 
 /// A value of an enum that the command line names as the library does.
 pub(super) trait Choice: Copy + Send + Sync + 'static {

@@ -6,11 +6,11 @@ use std::error::Error;
 
 use clap::Args;
 use glam::DVec2;
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::model::scene::Scene;
-use hiddenline::optimize::Options;
-use hiddenline::page::{Dash, PageOptions, PlotOptions};
-use hiddenline::write::Format;
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::optimize::Options;
+use hiddenline::stages::page::{Dash, PageOptions, PlotOptions};
+use hiddenline::stages::write::Format;
 
 use self::lines::LineArgs;
 use super::camera::{CameraArgs, ViewSource};

@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::DMat3;
-use hiddenline::camera::Camera;
-use hiddenline::camera::framing::sin_cos_deg;
-use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::face::Prepared;
-use hiddenline::extent::Extent;
-use hiddenline::model::scene::Scene;
-use hiddenline::optimize::Options;
-use hiddenline::page::{PageOptions, PlotOptions};
-use hiddenline::read::material_colors;
-use hiddenline::shading::fill::{FillOptions, Filled, fill_prepared};
-use hiddenline::strokes::Drawing;
-use hiddenline::timing::timed;
-use hiddenline::write::NoFills;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::camera::framing::sin_cos_deg;
+use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::engines::face::Prepared;
+use hiddenline::stages::extent::Extent;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::optimize::Options;
+use hiddenline::stages::page::{PageOptions, PlotOptions};
+use hiddenline::stages::read::material_colors;
+use hiddenline::stages::shading::fill::{FillOptions, Filled, fill_prepared};
+use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::timing::timed;
+use hiddenline::stages::write::NoFills;
 
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
@@ -224,7 +224,7 @@ impl Picture<'_> {
             fill_prepared(self.prepared, camera, &options)
         })?;
         run.progress.stage("drawing");
-        let mut edges = Drawing::default();
+        let mut edges = Strokes::default();
         if let Some(options) = &job.edges {
             let drawn = draw(scene, camera, options, page.mm_per_image_unit());
             run.stats.add(&drawn);

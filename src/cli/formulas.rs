@@ -1,6 +1,6 @@
 //! Messages about formulas, with the place that they are about.
 
-use hiddenline::surface::formula::FormulaError;
+use hiddenline::stages::surface::formula::FormulaError;
 
 /// Characters of a formula that are shown before the place of an error, and after it.
 const SHOWN: usize = 30;

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
-use hiddenline::model::mesh::Mesh;
+use hiddenline::stages::model::mesh::Mesh;
 
 use super::models::{ModelArgs, ModelFiles};
 use super::paper::Notes;

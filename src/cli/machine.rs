@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use hiddenline::optimize::estimate::Motion;
-use hiddenline::page::{Cropped, PageOptions};
-use hiddenline::write::{Format, gcode, hpgl};
+use hiddenline::stages::optimize::estimate::Motion;
+use hiddenline::stages::page::{Cropped, PageOptions};
+use hiddenline::stages::write::{Format, gcode, hpgl};
 use thiserror::Error;
 
 use super::config;

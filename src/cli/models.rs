@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use hiddenline::model::arrange::{Arrangement, Pose, UpAxis};
-use hiddenline::model::mesh::{Mesh, Repairs};
-use hiddenline::read::{ModelFormat, material_files, read_file};
+use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::stages::model::mesh::{Mesh, Repairs};
+use hiddenline::stages::read::{ModelFormat, material_files, read_file};
 
 use super::messages::counted;
 use super::paper::Notes;

@@ -5,11 +5,11 @@ use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use hiddenline::optimize::{Options, near_overlap};
-use hiddenline::page::{Crop, Drawn, Orientation, Paper, RefitOptions, refit};
-use hiddenline::read_svg::{self, SvgOptions};
-use hiddenline::timing::timed;
-use hiddenline::write::Format;
+use hiddenline::stages::optimize::{Options, near_overlap};
+use hiddenline::stages::page::{Crop, Orientation, Paper, PenRole, RefitOptions, refit};
+use hiddenline::stages::read_svg::{self, SvgOptions};
+use hiddenline::stages::timing::timed;
+use hiddenline::stages::write::Format;
 
 use super::machine::{self, Device};
 use super::messages::counted;
@@ -124,8 +124,8 @@ impl OptimizeArgs {
         if output.format == Format::Json {
             return Err("JSON is for drawings of models; choose another format".into());
         }
-        let pens = output.plotting.pens(hiddenline::page::DEFAULT_PEN_WIDTH_MM);
-        if pens.iter().any(|rule| rule.drawn != Drawn::Visible) {
+        let pens = output.plotting.pens(hiddenline::stages::page::DEFAULT_PEN_WIDTH_MM);
+        if pens.iter().any(|rule| rule.drawn != PenRole::Visible) {
             return Err("an SVG has its pens already; --pen can only be given for `visible`, \
                         which puts all lines on one"
                 .into());
@@ -162,13 +162,13 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         Ok(read_svg::read_bytes(&bytes, &job.svg).map_err(|error| format!("{name}: {error}"))?)
     })?;
     let mut plot = read.plot;
-    for rule in job.output.plotting.pens(hiddenline::page::DEFAULT_PEN_WIDTH_MM) {
-        let mut lines = hiddenline::plot::Polylines::default();
+    for rule in job.output.plotting.pens(hiddenline::stages::page::DEFAULT_PEN_WIDTH_MM) {
+        let mut lines = hiddenline::stages::plot::Polylines::default();
         for line in plot.layers.iter().flat_map(|layer| layer.lines.iter()) {
             lines.push(line.iter().copied());
         }
         let name = rule.drawn.name().into_owned();
-        plot.layers = vec![hiddenline::plot::Layer {
+        plot.layers = vec![hiddenline::stages::plot::Layer {
             number: rule.number,
             label: rule.controls.label(rule.number, &name),
             name,

@@ -5,9 +5,9 @@ mod place;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use hiddenline::write::Format;
-use hiddenline::write::png::{Marks, Resolution};
-use hiddenline::write::svg::StrokeElement;
+use hiddenline::stages::write::Format;
+use hiddenline::stages::write::png::{Marks, Resolution};
+use hiddenline::stages::write::svg::StrokeElement;
 
 pub(super) use self::place::check_place;
 use super::choice::one_of;

@@ -1,7 +1,7 @@
 //! The page: its size, and how large the drawing is on it.
 
 use clap::{Args, ValueEnum};
-use hiddenline::page::{
+use hiddenline::stages::page::{
     DEFAULT_MARGIN_MM, DEFAULT_PEN_WIDTH_MM, Orientation, PageOptions, Paper, Placement,
 };
 

@@ -5,16 +5,16 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use hiddenline::camera::Camera;
-use hiddenline::extent::Extent;
-use hiddenline::optimize::estimate::PenWork;
-use hiddenline::optimize::{Effort, Options};
-use hiddenline::page::{Page, PageError, PageOptions, Placement, PlotOptions, crop_to};
-use hiddenline::plot::Plot;
-use hiddenline::strokes::Drawing;
-use hiddenline::timing::timed;
-use hiddenline::write::png::PngError;
-use hiddenline::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::extent::Extent;
+use hiddenline::stages::optimize::estimate::PenWork;
+use hiddenline::stages::optimize::{Effort, Options};
+use hiddenline::stages::page::{Page, PageError, PageOptions, Placement, PlotOptions, crop_to};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::timing::timed;
+use hiddenline::stages::write::png::PngError;
+use hiddenline::stages::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
 use super::machine::Device;
 use super::messages::counted;
@@ -139,7 +139,7 @@ impl<'a> Run<'a> {
     /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
     pub(super) fn draw(
         mut self,
-        drawing: &Drawing,
+        drawing: &Strokes,
         sheet: &Sheet,
         plot: PlotOptions,
         usual: &Options,
@@ -334,7 +334,7 @@ fn described(plot: &Plot, done: &Done) -> String {
 }
 
 /// How many strokes there are.
-fn drawing_described(drawing: &Drawing) -> String {
+fn drawing_described(drawing: &Strokes) -> String {
     let n_hidden = drawing.iter().filter(|stroke| stroke.qi > 0).count();
     let visible = counted(drawing.len() - n_hidden, "stroke", "strokes");
     match n_hidden {

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hiddenline::draw::DrawOptions;
-use hiddenline::optimize::estimate::{self, PenWork};
-use hiddenline::optimize::{Effort, Options, optimize, split_by_distance};
-use hiddenline::page::{Drawn, LayerControls, PenRule};
-use hiddenline::plot::{Pen, Plot};
-use hiddenline::write::Format;
+use hiddenline::stages::draw::DrawOptions;
+use hiddenline::stages::optimize::estimate::{self, PenWork};
+use hiddenline::stages::optimize::{Effort, Options, optimize, split_by_distance};
+use hiddenline::stages::page::{LayerControls, PenRole, PenRule};
+use hiddenline::stages::plot::{Pen, Plot};
+use hiddenline::stages::write::Format;
 
 use super::machine::{MachineError, Target};
 use super::stats::PlotStats;
@@ -137,7 +137,7 @@ pub(super) struct Finished {
 impl Plotting {
     /// Whether kinds of line or hidden levels have pens of their own.
     pub(super) fn has_pens_by_kind(&self) -> bool {
-        let by_kind = |drawn| matches!(drawn, Drawn::Kind(_) | Drawn::HiddenLevel(_));
+        let by_kind = |drawn| matches!(drawn, PenRole::Kind(_) | PenRole::HiddenLevel(_));
         self.pens.iter().any(|pen| by_kind(pen.drawn))
     }
 
@@ -170,12 +170,12 @@ impl Plotting {
             }
         };
         if drawing.lines.has_outline() && drawing.lines.has_more_than_outline() {
-            add(Drawn::Outline, 2.0 * width_mm, OUTLINE_COLOR.into());
+            add(PenRole::Outline, 2.0 * width_mm, OUTLINE_COLOR.into());
         }
         let levels = drawing.hidden_levels.unwrap_or(0);
         for level in 1..=levels {
             let gray = 0x80 + (level - 1) * 0x60 / levels;
-            add(Drawn::HiddenLevel(level), width_mm, format!("#{gray:02x}{gray:02x}{gray:02x}"));
+            add(PenRole::HiddenLevel(level), width_mm, format!("#{gray:02x}{gray:02x}{gray:02x}"));
         }
         rules
     }
@@ -183,13 +183,13 @@ impl Plotting {
     /// The pens of a surface; also one for its underside if that is apart, unless there is a rule.
     pub(super) fn pens_for_surface(&self, underside: bool, width_mm: f64) -> Vec<PenRule> {
         let mut rules = self.pens(width_mm);
-        if underside && rules.iter().all(|rule| rule.drawn != Drawn::Underside) {
+        if underside && rules.iter().all(|rule| rule.drawn != PenRole::Underside) {
             // The first number is left for the lines on the upper side.
             let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
             let number = (2..).find(is_free).unwrap_or(2);
             let pen = Pen { width_mm, color: UNDERSIDE_COLOR.into() };
             let controls = LayerControls::default();
-            rules.push(PenRule { drawn: Drawn::Underside, number, pen, controls });
+            rules.push(PenRule { drawn: PenRole::Underside, number, pen, controls });
         }
         rules
     }

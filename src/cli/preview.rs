@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use hiddenline::camera::Projection;
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::shading::preview::{self, PreviewError, PreviewOptions};
-use hiddenline::write::Format;
+use hiddenline::stages::camera::Projection;
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::shading::preview::{self, PreviewError, PreviewOptions};
+use hiddenline::stages::write::Format;
 
 use self::picture::PictureArgs;
 use super::camera::{CameraArgs, ViewSource};

@@ -2,12 +2,12 @@
 
 use std::error::Error;
 
-use hiddenline::camera::Camera;
-use hiddenline::classify::LineSelection;
-use hiddenline::model::mesh::Mesh;
-use hiddenline::model::scene::Scene;
-use hiddenline::strokes::StrokeKind;
-use hiddenline::timing::timed;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::model::mesh::Mesh;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::timing::timed;
 
 use super::camera::ViewSource;
 use super::paper::Notes;

@@ -1,10 +1,10 @@
 //! The statistics of `--stats`: what a run counted and how long its stages took.
 
-use hiddenline::draw::Drawn;
-use hiddenline::engines::face::FaceWork;
-use hiddenline::model::scene::Scene;
-use hiddenline::optimize::estimate::PenWork;
-use hiddenline::timing::Seconds;
+use hiddenline::stages::draw::DrawOutput;
+use hiddenline::stages::engines::face::FaceWork;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::optimize::estimate::PenWork;
+use hiddenline::stages::timing::Seconds;
 use serde::Serialize;
 
 /// Counts and times of one run, serialized with fixed key names.
@@ -75,7 +75,7 @@ pub(super) struct Counts {
 
 impl Stats {
     /// Adds what drawing lines counted.
-    pub(super) fn add(&mut self, drawn: &Drawn) {
+    pub(super) fn add(&mut self, drawn: &DrawOutput) {
         self.engine = drawn.engine;
         self.drawn_edges = drawn.n_lines;
         self.strokes = drawn.drawing.len();

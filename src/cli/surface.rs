@@ -9,21 +9,21 @@ mod smoothness;
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
-use hiddenline::axes::{Titles, axes, missing};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::chain::grid_lines::{Lines, strokes};
-use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines, meshed};
-use hiddenline::engines::edge::Engine;
-use hiddenline::engines::surface::floating_horizon::Family;
-use hiddenline::engines::surface::{
+use hiddenline::stages::axes::{Titles, axes, missing};
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::chain::grid_lines::{Lines, strokes};
+use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines, meshed};
+use hiddenline::stages::engines::edge::Engine;
+use hiddenline::stages::engines::surface::floating_horizon::Family;
+use hiddenline::stages::engines::surface::{
     CellOrder, GridPieces, SurfaceError, SurfaceSide, floating_horizon, max_min,
 };
-use hiddenline::optimize::{Effort, Options};
-use hiddenline::page::{Dash, Page, PageOptions, PlotOptions};
-use hiddenline::strokes::Drawing;
-use hiddenline::surface::{Grid, LatticeLines, LinedScene};
-use hiddenline::timing::timed;
-use hiddenline::write::Format;
+use hiddenline::stages::optimize::{Effort, Options};
+use hiddenline::stages::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::surface::{Grid, LatticeLines, LinedScene};
+use hiddenline::stages::timing::timed;
+use hiddenline::stages::write::Format;
 
 use self::args::Levels;
 pub(super) use self::args::SurfaceArgs;
@@ -113,7 +113,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut drawing = match (grid, &scene) {
         (Some(grid), _) => draw_by_grid(job, grid, &lines, &camera, stats)?,
         (None, Some(scene)) => draw_by_mesh(job, scene, &sheet, stats)?,
-        (None, None) => Drawing::default(),
+        (None, None) => Strokes::default(),
     };
     run.notes.warnings.extend(crowding(job, &drawing, &sheet.page));
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
@@ -128,7 +128,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 }
 
 /// A warning when lines are so close that they flow into each other.
-fn crowding(job: &Job, drawing: &Drawing, page: &Page) -> Option<String> {
+fn crowding(job: &Job, drawing: &Strokes, page: &Page) -> Option<String> {
     let has_families = job.lines.along_x || job.lines.along_y;
     if job.lines.separate || !has_families || job.output.format == Format::Json {
         return None;
@@ -193,7 +193,7 @@ fn brief(number: f64) -> f64 {
 /// What to do with the strokes. Those of a grid run along its lines already, in a short way from
 /// line to line, and no line lies on another unless the surface is seen edge-on: joining and
 /// ordering many of them again would take several times as long as all the rest.
-fn joining(drawing: &Drawing, is_by_grid: bool, camera: &Camera) -> Options {
+fn joining(drawing: &Strokes, is_by_grid: bool, camera: &Camera) -> Options {
     let usual = Options::for_drawings();
     let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
     if is_by_grid && !is_edge_on && drawing.n_points() > FEW_POINTS {
@@ -209,7 +209,7 @@ fn draw_by_grid(
     lines: &Lines,
     camera: &Camera,
     stats: &mut Stats,
-) -> Result<Drawing, SurfaceError> {
+) -> Result<Strokes, SurfaceError> {
     let mut seconds = stats.seconds;
     let (engine, pieces) = timed(&mut seconds.visibility, || -> Result<_, SurfaceError> {
         Ok(match job.engine {
@@ -281,7 +281,7 @@ fn draw_by_mesh(
     scene: &LinedScene,
     sheet: &Sheet,
     stats: &mut Stats,
-) -> Result<Drawing, String> {
+) -> Result<Strokes, String> {
     let options = meshed::MeshedOptions {
         engine: match job.engine {
             EngineName::Roberts => Engine::Roberts,

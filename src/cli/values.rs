@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use glam::DVec3;
-use hiddenline::classify::LineSelection;
-use hiddenline::optimize::Effort;
-use hiddenline::page::{Dash, Drawn, LayerControls, parse_length_mm};
-use hiddenline::shading::preview::LARGEST_SIDE;
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::optimize::Effort;
+use hiddenline::stages::page::{Dash, LayerControls, PenRole, parse_length_mm};
+use hiddenline::stages::shading::preview::LARGEST_SIDE;
+use hiddenline::stages::strokes::StrokeKind;
 
 use super::suggestion::suggestion;
 
@@ -147,7 +147,7 @@ pub(super) fn effort(text: &str) -> Result<Effort, String> {
 /// A pen as it is typed: what it draws, its number, and what else is said of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PenText {
-    pub(super) drawn: Drawn,
+    pub(super) drawn: PenRole,
     pub(super) number: u32,
     pub(super) width_mm: Option<f64>,
     /// `#rrggbb`.
@@ -196,7 +196,7 @@ fn layer_controls(parts: &[&str]) -> Result<LayerControls, String> {
     Ok(controls)
 }
 
-fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
+fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
     const KINDS: [StrokeKind; 13] = [
         StrokeKind::Silhouette,
         StrokeKind::Crease,
@@ -214,15 +214,15 @@ fn drawn_by_pen(name: &str) -> Result<Drawn, String> {
     ];
     let level = name.strip_prefix("hidden").and_then(|level| level.parse().ok());
     if let Some(level @ 1..=99) = level {
-        return Ok(Drawn::HiddenLevel(level));
+        return Ok(PenRole::HiddenLevel(level));
     }
     let all = || {
-        let hidden = [Drawn::Hidden, Drawn::HiddenLevel(1)];
-        let visible = [Drawn::Visible, Drawn::Outline, Drawn::Underside];
-        hidden.into_iter().chain(visible).chain(KINDS.map(Drawn::Kind))
+        let hidden = [PenRole::Hidden, PenRole::HiddenLevel(1)];
+        let visible = [PenRole::Visible, PenRole::Outline, PenRole::Underside];
+        hidden.into_iter().chain(visible).chain(KINDS.map(PenRole::Kind))
     };
     all().find(|drawn| drawn.name() == name).ok_or_else(|| {
-        let names: Vec<_> = all().map(Drawn::name).collect();
+        let names: Vec<_> = all().map(PenRole::name).collect();
         let names = names.iter().map(AsRef::as_ref);
         format!("no pen draws `{name}`{}", suggestion(name, names))
     })

@@ -1,7 +1,7 @@
 //! Surfaces of triangles: by [`tin`] where possible, otherwise by the mesh engines, which also draw
 //! surfaces with holes, several sheets, and any shape in space.
 
-use super::Drawn;
+use super::DrawOutput;
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
@@ -46,7 +46,7 @@ pub fn draw(
     camera: &Camera,
     options: &MeshedOptions,
     mm_per_unit: f64,
-) -> Drawn {
+) -> DrawOutput {
     let mut seconds = Seconds::default();
     let view = timed(&mut seconds.classify, || view(surface, camera, options));
     let settings =
@@ -81,8 +81,8 @@ pub fn draw(
         drawing.append_undersides(&lower);
         drawing
     });
-    let n_lines = view.drawn().len();
-    Drawn { drawing, engine, n_lines, counts, n_exact, seconds }
+    let n_lines = view.selected().len();
+    DrawOutput { drawing, engine, n_lines, counts, n_exact, seconds }
 }
 
 /// The surface with its own lines and those of the view that the options ask for.
@@ -102,7 +102,7 @@ fn view<'a>(surface: &'a LinedScene, camera: &Camera, options: &MeshedOptions) -
     }
     if selection != LineSelection::NONE {
         let of_the_view = ViewedScene::new(scene, camera, selection, DEFAULT_CREASE_DEG);
-        edges.extend_from_slice(of_the_view.drawn());
+        edges.extend_from_slice(of_the_view.selected());
     }
     ViewedScene::with_edges(scene, camera, edges)
 }
@@ -110,7 +110,7 @@ fn view<'a>(surface: &'a LinedScene, camera: &Camera, options: &MeshedOptions) -
 /// The spans of edges seen from above, and of those seen from below.
 fn by_side(view: &ViewedScene, visibility: &Visibility) -> [Visibility; 2] {
     let mut sides = [Visibility::default(), Visibility::default()];
-    for (k, drawn) in view.drawn().iter().enumerate() {
+    for (k, drawn) in view.selected().iter().enumerate() {
         let is_below = usize::from(is_underside(view, drawn.edge));
         sides[is_below].push(visibility.spans(k));
         sides[1 - is_below].push(&[]);

@@ -49,8 +49,22 @@ pub enum PaperError {
 const LONGEST_SIDE_MM: f64 = 100_000.0;
 
 impl Paper {
-    /// 210 x 297 mm.
+    /// 297 × 420 mm.
+    pub const A3: Self = Self { width_mm: 297.0, height_mm: 420.0, name: Some("a3") };
+
+    /// 210 × 297 mm.
     pub const A4: Self = Self { width_mm: 210.0, height_mm: 297.0, name: Some("a4") };
+
+    /// 148 × 210 mm.
+    pub const A5: Self = Self { width_mm: 148.0, height_mm: 210.0, name: Some("a5") };
+
+    /// 8.5 × 11 in.
+    pub const LETTER: Self = Self { width_mm: 215.9, height_mm: 279.4, name: Some("letter") };
+
+    /// A sheet of any size, in millimeters. It is not turned to suit the drawing.
+    pub const fn new(width_mm: f64, height_mm: f64) -> Self {
+        Self { width_mm, height_mm, name: None }
+    }
 
     /// The sheet as it is to lie.
     pub(super) fn turned(self, asked: Option<Orientation>, suits: Orientation) -> Self {

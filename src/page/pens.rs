@@ -10,7 +10,7 @@ use super::PlotOptions;
 
 /// Strokes that a pen can be given for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Drawn {
+pub enum PenRole {
     /// Visible strokes of all kinds that have no rule of their own.
     Visible,
     /// Hidden strokes of all levels that have no rule of their own.
@@ -25,7 +25,7 @@ pub enum Drawn {
     Kind(StrokeKind),
 }
 
-impl Drawn {
+impl PenRole {
     /// The name on the command line and of the layer.
     pub fn name(self) -> Cow<'static, str> {
         match self {
@@ -49,7 +49,7 @@ impl Drawn {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PenRule {
     /// What it draws.
-    pub drawn: Drawn,
+    pub drawn: PenRole,
     /// Its number, 1 or more.
     pub number: u32,
     /// The pen.
@@ -92,7 +92,7 @@ impl LayerControls {
 /// All pens while they draw.
 pub(super) struct Holder {
     /// What is drawn by which layer.
-    rules: Vec<(Drawn, usize)>,
+    rules: Vec<(PenRole, usize)>,
     layers: Vec<Layer>,
     /// Whether a layer stays when nothing is drawn on it.
     fixed: Vec<bool>,
@@ -131,8 +131,8 @@ impl Holder {
                 holder.add(drawn, number, pen, fixed)
             })
         };
-        let visible = layer_of(Drawn::Visible, "#000000", fixed);
-        let hidden = layer_of(Drawn::Hidden, "#808080", fixed && with_hidden);
+        let visible = layer_of(PenRole::Visible, "#000000", fixed);
+        let hidden = layer_of(PenRole::Hidden, "#808080", fixed && with_hidden);
         Self { visible, hidden, ..holder }
     }
 
@@ -144,7 +144,7 @@ impl Holder {
         number
     }
 
-    fn add(&mut self, drawn: Drawn, number: u32, pen: Pen, fixed: bool) -> usize {
+    fn add(&mut self, drawn: PenRole, number: u32, pen: Pen, fixed: bool) -> usize {
         let name = drawn.name().into_owned();
         self.layers.push(Layer {
             number,
@@ -161,11 +161,11 @@ impl Holder {
     pub(super) fn lines(&mut self, stroke: &Stroke) -> &mut Polylines {
         let ruled = |drawn| self.rules.iter().rev().find(|rule| rule.0 == drawn).map(|rule| rule.1);
         let layer = if stroke.qi > 0 {
-            ruled(Drawn::HiddenLevel(stroke.qi)).unwrap_or(self.hidden)
+            ruled(PenRole::HiddenLevel(stroke.qi)).unwrap_or(self.hidden)
         } else {
-            let outline = if stroke.outline { ruled(Drawn::Outline) } else { None };
-            let below = if stroke.underside { ruled(Drawn::Underside) } else { None };
-            outline.or(below).or_else(|| ruled(Drawn::Kind(stroke.kind))).unwrap_or(self.visible)
+            let outline = if stroke.outline { ruled(PenRole::Outline) } else { None };
+            let below = if stroke.underside { ruled(PenRole::Underside) } else { None };
+            outline.or(below).or_else(|| ruled(PenRole::Kind(stroke.kind))).unwrap_or(self.visible)
         };
         &mut self.layers[layer].lines
     }

@@ -36,7 +36,7 @@ pub(super) struct Context {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Purpose {
     /// To be drawn.
-    Drawing,
+    Strokes,
     /// For the area or the box of their outlines: paint, dashes and clip paths do not matter.
     Outlines,
 }
@@ -91,7 +91,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             pens: Vec::new(),
             pen_of: FxHashMap::default(),
             outlines: Polylines::default(),
-            purpose: Purpose::Drawing,
+            purpose: Purpose::Strokes,
             regions: FxHashMap::default(),
             open_clips: Vec::new(),
             covers: Vec::new(),
@@ -257,7 +257,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         }
         let mut context = Context { style, depth: around.depth + 1, ..around.clone() };
         context.to_page *= self.transform(node, &own, context.viewport)?;
-        if self.purpose == Purpose::Drawing {
+        if self.purpose == Purpose::Strokes {
             if own.has_mask {
                 self.warnings.insert("masks are ignored: lines are drawn whole".to_owned());
             }
@@ -387,7 +387,7 @@ impl<'a, 'input> Reader<'a, 'input> {
     ) -> Result<(), SvgError> {
         let style = &context.style;
         let is_read = match self.purpose {
-            Purpose::Drawing => style.is_seen(),
+            Purpose::Strokes => style.is_seen(),
             Purpose::Outlines => style.is_visible(),
         };
         if !is_read {

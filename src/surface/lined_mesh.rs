@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 
 use super::Grid;
 use super::levels::sorted;
-use crate::classify::DrawnEdge;
+use crate::classify::SelectedLine;
 use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
 use crate::model::scene::Scene;
 use crate::strokes::StrokeKind;
@@ -52,7 +52,7 @@ pub struct LinedScene {
     /// The triangles.
     pub scene: Scene,
     /// The edges that lie on a line.
-    pub lines: Vec<DrawnEdge>,
+    pub lines: Vec<SelectedLine>,
 }
 
 impl LinedMesh {
@@ -185,7 +185,7 @@ impl LinedMesh {
         let lines = ends
             .iter()
             .zip(&lines)
-            .filter_map(|(ends, line)| Some(DrawnEdge { edge: edge(*ends)?, kind: line.kind }))
+            .filter_map(|(ends, line)| Some(SelectedLine { edge: edge(*ends)?, kind: line.kind }))
             .collect();
         Ok(LinedScene { scene, lines })
     }

@@ -112,6 +112,9 @@ pub enum Error {
     Toml(#[from] toml::de::Error),
 }
 
+/// The profile that G-code is for unless another is named.
+pub const DEFAULT_PROFILE: &str = "grbl-servo";
+
 const PLACEHOLDERS: [&str; 10] =
     ["x", "y", "feed", "layer", "name", "color", "pen_width", "width", "height", "title"];
 

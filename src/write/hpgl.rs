@@ -71,6 +71,9 @@ pub struct Paper {
     pub park: [i32; 2],
 }
 
+/// The plotter that HPGL is for unless another is named.
+pub const DEFAULT_MACHINE: &str = "hp7475a";
+
 /// A plotter with a paper in it: what [`write()`] draws on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
@@ -158,19 +161,29 @@ pub fn machines_from(text: &str) -> Result<Vec<Machine>, Error> {
     Ok(toml::from_str::<List>(text)?.machine)
 }
 
+impl Machine {
+    /// A built-in plotter.
+    ///
+    /// # Errors
+    /// [`Error::UnknownMachine`].
+    pub fn named(name: &str) -> Result<Self, Error> {
+        let mut machines = machines()?;
+        let known = machines.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ");
+        let index = machines
+            .iter()
+            .position(|m| m.name.eq_ignore_ascii_case(name))
+            .ok_or(Error::UnknownMachine { name: name.to_owned(), known })?;
+        Ok(machines.swap_remove(index))
+    }
+}
+
 impl Profile {
     /// The plotter `machine` with the named paper, or the one of the page's size, either way up.
     ///
     /// # Errors
     /// Unknown names, no paper of that size, and layers whose number is beyond the pens.
     pub fn new(plot: &Plot, machine: &str, paper: Option<&str>) -> Result<Self, Error> {
-        let mut machines = machines()?;
-        let known = machines.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ");
-        let index = machines
-            .iter()
-            .position(|m| m.name.eq_ignore_ascii_case(machine))
-            .ok_or(Error::UnknownMachine { name: machine.to_owned(), known })?;
-        Self::on(plot, machines.swap_remove(index), paper)
+        Self::on(plot, Machine::named(machine)?, paper)
     }
 
     /// As [`Profile::new`], for a plotter that is not built in.

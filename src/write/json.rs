@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
-use crate::strokes::{Drawing, Stroke};
+use crate::strokes::{Stroke, Strokes};
 
 /// The value of `format`.
 const FORMAT: &str = "hiddenline-strokes";
@@ -73,7 +73,7 @@ fn serialize_points<S: serde::Serializer>(
 /// # Errors
 /// Those of `out`.
 pub fn write(
-    drawing: &Drawing,
+    drawing: &Strokes,
     camera: &Camera,
     page_from_image: DAffine2,
     out: &mut dyn io::Write,

@@ -15,11 +15,14 @@ pub mod pdf;
 #[cfg(feature = "png")]
 pub mod png;
 pub mod svg;
+mod target;
 
 use std::io;
 use std::path::Path;
 
 use thiserror::Error;
+
+pub use self::target::{Target, WriteError, write};
 
 use crate::plot::Plot;
 
@@ -89,6 +92,12 @@ impl Format {
     pub fn is_binary(self) -> bool {
         matches!(self, Self::Png | Self::Pdf)
     }
+}
+
+/// All extensions of names of files that can be written, for messages.
+pub(crate) fn known_extensions() -> String {
+    let extensions = Format::ALL.iter().flat_map(|format| format.extensions());
+    extensions.map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
 }
 
 /// A page has filled areas, and the format has none.

@@ -8,8 +8,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
-use hiddenline::model::mesh::Mesh;
-use hiddenline::read::read_file;
+use hiddenline::stages::model::mesh::Mesh;
+use hiddenline::stages::read::read_file;
 
 const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models");
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models");

@@ -1,10 +1,10 @@
 //! Which lines are drawn, and how.
 
 use clap::{Args, ValueEnum};
-use hiddenline::classify::{DEFAULT_CREASE_DEG, LineSelection};
-use hiddenline::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
-use hiddenline::engines::edge::Engine;
-use hiddenline::page::Dash;
+use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
+use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
+use hiddenline::stages::engines::edge::Engine;
+use hiddenline::stages::page::Dash;
 
 use crate::cli::plotting::Plotting;
 use crate::cli::{config, values};

@@ -2,9 +2,9 @@
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use hiddenline::engines::face::warnock::Subdivision;
-use hiddenline::engines::face::{FaceEngine, FaceOptions};
-use hiddenline::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, Show};
+use hiddenline::stages::engines::face::warnock::Subdivision;
+use hiddenline::stages::engines::face::{FaceEngine, FaceOptions};
+use hiddenline::stages::shading::fill::{DEFAULT_SEAM_MM, FillOptions, Palette, Show};
 
 use crate::cli::values;
 

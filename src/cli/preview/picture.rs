@@ -2,9 +2,9 @@
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use hiddenline::classify::LineSelection;
-use hiddenline::engines::image::ImageEngine;
-use hiddenline::shading::preview::{Pixels, PreviewOptions, Show};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::engines::image::ImageEngine;
+use hiddenline::stages::shading::preview::{Pixels, PreviewOptions, Show};
 
 use crate::cli::{Refused, values};
 

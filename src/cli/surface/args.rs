@@ -1,9 +1,9 @@
 //! What is typed after `hiddenline surface`, and what it means.
 
 use clap::{Args, ValueEnum};
-use hiddenline::axes::Titles;
-use hiddenline::chain::grid_lines::Lines;
-use hiddenline::engines::surface::CellOrder;
+use hiddenline::stages::axes::Titles;
+use hiddenline::stages::chain::grid_lines::Lines;
+use hiddenline::stages::engines::surface::CellOrder;
 
 use super::Job;
 use super::engine::EngineName;

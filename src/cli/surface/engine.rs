@@ -1,9 +1,9 @@
 //! Which engine draws a surface.
 
 use clap::ValueEnum;
-use hiddenline::camera::Camera;
-use hiddenline::engines::surface::max_min;
-use hiddenline::surface::{Grid, Holes};
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::engines::surface::max_min;
+use hiddenline::stages::surface::{Grid, Holes};
 
 use super::Job;
 use super::sheets::Surface;

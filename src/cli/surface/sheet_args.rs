@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{Duplicates, HeightOptions, MAX_SAMPLES};
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{Duplicates, HeightOptions, MAX_SAMPLES};
 
 use super::sheets::{Aspect, Input, Sheets};
 use crate::cli::formulas::in_formula;

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use glam::DVec3;
-use hiddenline::extent::Extent;
-use hiddenline::model::mesh::Mesh;
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{
+use hiddenline::stages::extent::Extent;
+use hiddenline::stages::model::mesh::Mesh;
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{
     Duplicates, Grid, HeightField, HeightNote, HeightOptions, Holes, LatticeLines, LinedMesh,
     MAX_SAMPLES, PointsError, ScatteredPoints, TrimmedGrid, close_seams, delaunay, evenly,
     lattice_extent, read_heights,
 };
 
-use hiddenline::camera::Camera;
+use hiddenline::stages::camera::Camera;
 
 use crate::cli::messages::counted;
 use crate::cli::paper::Notes;

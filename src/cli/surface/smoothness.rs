@@ -9,8 +9,8 @@
 use std::error::Error;
 
 use glam::{DVec2, DVec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::page::Page;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::page::Page;
 
 use super::Job;
 use super::engine::{EngineName, only_grid};

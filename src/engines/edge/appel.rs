@@ -140,7 +140,7 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
     }
     let partners =
         if settings.find_doubled { doubled::partners(view, &segments) } else { Pairs::default() };
-    let drawing = Drawing { view, settings, sides: &sides, partners: &partners, starts: &starts };
+    let drawing = Strokes { view, settings, sides: &sides, partners: &partners, starts: &starts };
     let parts: Vec<(Visibility, Vec<u32>)> = segments
         .par_chunks(CHUNK)
         .zip(&traced)
@@ -179,7 +179,7 @@ fn apart(
 ) -> (Vec<Option<Segment>>, Vec<Option<Segment>>) {
     let n_edges = view.scene().topology().edges().len() as u32;
     let mut crossings = vec![None; segments.len()];
-    let first = view.drawn().partition_point(|drawn| drawn.edge < n_edges);
+    let first = view.selected().partition_point(|drawn| drawn.edge < n_edges);
     crossings[first..].swap_with_slice(&mut segments[first..]);
     (segments, crossings)
 }
@@ -381,7 +381,7 @@ fn first_layers(layers: [i32; 2], end: usize, link: &Link) -> [i32; 2] {
 }
 
 /// What is needed to turn counts into spans.
-struct Drawing<'d, 'a> {
+struct Strokes<'d, 'a> {
     view: &'d ViewedScene<'a>,
     settings: &'d Settings,
     sides: &'d Sides<'a>,
@@ -389,7 +389,7 @@ struct Drawing<'d, 'a> {
     starts: &'d Starts,
 }
 
-impl Drawing<'_, '_> {
+impl Strokes<'_, '_> {
     /// The spans of a chunk of segments that begins with number `first`, and the numbers of those
     /// of which nothing certain is known.
     fn spans(

@@ -75,7 +75,7 @@ pub fn solve(
 /// there are triangles: there, finding what is cut and what is near in space is most of its work.
 fn fastest(view: &ViewedScene) -> Engine {
     let n_triangles = view.scene().triangles().len();
-    let is_small = n_triangles < SMALL_SCENE && view.drawn().len() < n_triangles;
+    let is_small = n_triangles < SMALL_SCENE && view.selected().len() < n_triangles;
     if is_small { Engine::Roberts } else { Engine::Appel }
 }
 

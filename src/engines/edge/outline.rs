@@ -58,7 +58,7 @@ pub fn can_be_outline(kind: StrokeKind) -> bool {
 /// Expected cost: the triangles, once, for the index, and for each edge those near its image.
 pub fn find(view: &ViewedScene) -> Outline {
     let segments: Vec<Option<Segment>> = view
-        .drawn()
+        .selected()
         .par_iter()
         .map(|drawn| {
             let segment = can_be_outline(drawn.kind).then(|| Segment::new(view, drawn.edge))??;

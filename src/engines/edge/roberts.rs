@@ -62,7 +62,7 @@ pub fn solve_all_pairs(view: &ViewedScene, settings: &Settings) -> (Visibility, 
 
 /// The drawn edges as segments.
 pub(super) fn segments(view: &ViewedScene) -> Vec<Option<Segment>> {
-    view.drawn().par_iter().map(|drawn| Segment::new(view, drawn.edge)).collect()
+    view.selected().par_iter().map(|drawn| Segment::new(view, drawn.edge)).collect()
 }
 
 fn run(
@@ -160,7 +160,7 @@ fn clip_by(
     if let Some((cover, [p, q], same_depth)) = border
         && let Some(other) = view.scene().topology().find_edge(p, q)
         && other != segment.edge
-        && view.is_drawn(other)
+        && view.is_selected(other)
         && (!same_depth || other < segment.edge)
     {
         sweep.add_doubled(&cover);

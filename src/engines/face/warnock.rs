@@ -185,10 +185,10 @@ struct Warnock<'a> {
     tally: Tally,
 }
 
-type Drawn = Vec<(u32, Region)>;
+type DrawOutput = Vec<(u32, Region)>;
 
 impl Warnock<'_> {
-    fn window(&self, window: Window, candidates: &[u32], parallel: u32) -> Drawn {
+    fn window(&self, window: Window, candidates: &[u32], parallel: u32) -> DrawOutput {
         let bounds = self.bounds(window);
         let mut reaching: Vec<(u32, Class)> = Vec::new();
         for &polygon in candidates {
@@ -225,7 +225,7 @@ impl Warnock<'_> {
         let parts = self.divided(window, &polygons);
         if parallel > 0 {
             let drawn = parts.par_iter().map(|&part| self.window(part, &polygons, parallel - 1));
-            return drawn.collect::<Vec<Drawn>>().into_iter().flatten().collect();
+            return drawn.collect::<Vec<DrawOutput>>().into_iter().flatten().collect();
         }
         parts.into_iter().flat_map(|part| self.window(part, &polygons, 0)).collect()
     }
@@ -263,7 +263,7 @@ impl Warnock<'_> {
     }
 
     /// The nearest polygon at the center of a leaf; of equally near ones the first.
-    fn leaf(&self, reaching: &[(u32, Class)], bounds: (DVec2, DVec2)) -> Drawn {
+    fn leaf(&self, reaching: &[(u32, Class)], bounds: (DVec2, DVec2)) -> DrawOutput {
         let center = (bounds.0 + bounds.1) / 2.0;
         let on_grid = self.images.grid.snap(center);
         let covers = |polygon: u32| self.images.flats[polygon as usize].region.contains(on_grid);

@@ -72,7 +72,7 @@ pub fn solve_in_strips(
 ) -> Option<(Visibility, HorizonCounts)> {
     let scene = view.scene();
     let n_edges = scene.topology().edges().len();
-    let has_others = view.drawn().last().is_some_and(|drawn| drawn.edge as usize >= n_edges);
+    let has_others = view.selected().last().is_some_and(|drawn| drawn.edge as usize >= n_edges);
     let sheets = Sheets::of(scene)?;
     if has_others || !is_clear_of_near_plane(view) {
         return None;
@@ -447,7 +447,7 @@ impl TinPart {
 fn visibility(view: &ViewedScene, pieces: &GridPieces) -> Visibility {
     let mut visibility = Visibility::default();
     let mut spans: Vec<Span> = Vec::new();
-    for drawn in view.drawn() {
+    for drawn in view.selected() {
         spans.clear();
         let ends = view.scene().topology().edge(drawn.edge);
         let is_kept = ends.iter().all(|&v| view.sight().near_distance(v).1 != Sign::Negative);

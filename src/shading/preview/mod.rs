@@ -27,7 +27,7 @@ use crate::engines::image::{
 };
 use crate::model::scene::Scene;
 use crate::shading::light::{DEFAULT_PAINT, to_bytes};
-use crate::strokes::Drawing;
+use crate::strokes::Strokes;
 use crate::timing::{Seconds, timed};
 
 /// Columns and rows of a picture, unless set otherwise.
@@ -157,7 +157,7 @@ pub fn write(
     scene: &Scene,
     camera: &Camera,
     options: &PreviewOptions,
-    edges: Option<&Drawing>,
+    edges: Option<&Strokes>,
     out: &mut dyn Write,
 ) -> Result<Seconds, PreviewError> {
     let mut seconds = Seconds::default();

@@ -6,7 +6,7 @@ use glam::DVec2;
 use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 use crate::engines::image::PixelMap;
-use crate::strokes::Drawing;
+use crate::strokes::Strokes;
 
 /// Strokes in pixels, and which of them reach each strip.
 pub(super) struct Overlay {
@@ -20,7 +20,7 @@ pub(super) struct Overlay {
 impl Overlay {
     /// The visible strokes of a drawing.
     pub(super) fn new(
-        edges: &Drawing,
+        edges: &Strokes,
         map: &PixelMap,
         width_px: f64,
         height: u32,

@@ -144,12 +144,12 @@ impl Formula {
     /// The first place at which the text is no formula.
     ///
     /// ```
-    /// use hiddenline::surface::formula::{Formula, Variables};
+    /// use hiddenline::stages::surface::formula::{Formula, Variables};
     /// let f = Formula::parse("-x^2 + 2^3^2", Variables::Plane)?;
     /// assert_eq!(f.value(3.0, 0.0), 503.0);
     /// let error = Formula::parse("1 + sine(x)", Variables::Plane).unwrap_err();
     /// assert_eq!(error.to_string(), "column 5: unknown name `sine`; did you mean `sin`?");
-    /// # Ok::<(), hiddenline::surface::formula::FormulaError>(())
+    /// # Ok::<(), hiddenline::stages::surface::formula::FormulaError>(())
     /// ```
     pub fn parse(text: &str, variables: Variables) -> Result<Self, FormulaError> {
         if text.len() > MAX_LENGTH {

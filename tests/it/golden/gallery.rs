@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use hiddenline::plot::Plot;
-use hiddenline::write::png::{self, Resolution};
-use hiddenline::write::svg::{self, StrokeElement};
+use hiddenline::stages::plot::Plot;
+use hiddenline::stages::write::png::{self, Resolution};
+use hiddenline::stages::write::svg::{self, StrokeElement};
 
 use crate::program::hiddenline;
 

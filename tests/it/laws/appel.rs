@@ -4,11 +4,11 @@ use crate::laws::engines;
 use crate::models;
 use crate::scenes::{number_of_scenes, random};
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, DEFAULT_NEAR, Projection};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::visibility::Span;
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::visibility::Span;
+use hiddenline::stages::model::scene::Scene;
 
 /// Spans as a drawing shows them: without those that rounding leaves next to nothing of, and
 /// without telling hidden parts apart by who else draws them when layers do not count.
@@ -48,7 +48,7 @@ fn assert_equal(name: &str, view: &ViewedScene, settings: &Settings) -> (usize, 
         assert!(
             is_same(&a, &b),
             "{name}, {settings:?}, edge {}:\nroberts {a:?}\nappel   {b:?}",
-            view.drawn()[i].edge
+            view.selected()[i].edge
         );
     }
     (found.len(), counts.fallback_edges)
@@ -103,7 +103,7 @@ fn models_are_drawn_as_roberts_draws_them() {
         if !is_small {
             continue;
         }
-        let Ok(model) = hiddenline::read::read_file(&path, None) else {
+        let Ok(model) = hiddenline::stages::read::read_file(&path, None) else {
             continue;
         };
         n_models += 1;
@@ -121,7 +121,8 @@ fn models_are_drawn_as_roberts_draws_them() {
                 (
                     LineSelection::default(),
                     Settings {
-                        contact_tolerance: size * hiddenline::draw::DEFAULT_CONTACT_TOLERANCE,
+                        contact_tolerance: size
+                            * hiddenline::stages::draw::DEFAULT_CONTACT_TOLERANCE,
                         count_layers: false,
                         find_doubled: true,
                     },

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::engines::edge::{Engine, Settings, outline, solve};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::engines::edge::{Engine, Settings, outline, solve};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::StrokeKind;
 
 use crate::scenes::{Rng, number_of_scenes};
 
@@ -48,7 +48,7 @@ fn picture(scene: &Scene, camera: &Camera, engine: Engine) -> Picture {
     let (visibility, _, _) = solve(&view, engine, &settings);
     let outline = outline::find(&view);
     let mut picture = Picture::new();
-    for (k, drawn) in view.drawn().iter().enumerate() {
+    for (k, drawn) in view.selected().iter().enumerate() {
         let ends = scene.line(drawn.edge).map(|v| scene.points()[v as usize]);
         let ends = ends.map(|p| p.to_array().map(|x| (x + 0.0).to_bits()));
         // The vertices of both scenes are in one order, so lines run the same way.
@@ -84,7 +84,7 @@ fn bent_faces_are_drawn_as_their_triangles_are() {
         let n_edges = scene.topology().edges().len() as u32;
         let lines = LineSelection::NONE.with(StrokeKind::Silhouette);
         let view = ViewedScene::new(&scene, &camera, lines, 30.0);
-        n_bends += view.drawn().iter().filter(|drawn| drawn.edge >= n_edges).count();
+        n_bends += view.selected().iter().filter(|drawn| drawn.edge >= n_edges).count();
     }
     assert!(n_bends > 100, "{n_bends}");
 }

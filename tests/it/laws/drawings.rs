@@ -95,7 +95,7 @@ fn feature_lines_drawn_exactly_are_the_visible_ones() {
 
 /// A model of the shared folder, polygons that are not flat cut into fans.
 fn model(path: &Path, sight: Sight) -> Scene {
-    let mesh = hiddenline::read::read_file(path, None).unwrap().mesh;
+    let mesh = hiddenline::stages::read::read_file(path, None).unwrap().mesh;
     let positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
     let mut faces = Vec::new();
     for f in 0..mesh.n_faces() as u32 {
@@ -129,7 +129,7 @@ fn small_models_hide_as_the_truth_says() {
         "cad_angle_block_open.stl",
     ] {
         let path = folder.join(name);
-        let mesh = hiddenline::read::read_file(&path, None).unwrap().mesh;
+        let mesh = hiddenline::stages::read::read_file(&path, None).unwrap().mesh;
         let (low, high) = mesh.bounds().unwrap();
         let (middle, size) = ((low + high) / 2.0, (high - low).max_element());
         let away = glam::dvec3(1.0, -2.0, 1.5) * size;

@@ -5,12 +5,12 @@ use crate::oracle::compare::{EngineEdge, EngineSpan, compare, truth_of};
 use crate::oracle::{EdgeTruth, Kind, Settings as TruthSettings, truth};
 use crate::scenes::{Scene as TestScene, number_of_scenes, random};
 use glam::DVec3;
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::StrokeKind;
 
 pub(crate) fn mesh(scene: &TestScene) -> Mesh {
     let mut soup = PolygonSoup {
@@ -43,9 +43,9 @@ pub(crate) fn solve_with(
     let view = ViewedScene::new(&built, &camera(scene), lines, 30.0);
     let (visibility, counts, _) = solve(&view, engine, settings);
     assert_eq!((counts.checksum_failures, counts.fallback_edges), (0, 0), "{}", scene.name);
-    assert_eq!(visibility.len(), view.drawn().len());
+    assert_eq!(visibility.len(), view.selected().len());
     let position = |v: u32| built.mesh().positions()[v as usize].to_array();
-    view.drawn()
+    view.selected()
         .iter()
         .enumerate()
         .map(|(i, drawn)| {

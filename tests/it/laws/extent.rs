@@ -1,14 +1,14 @@
 //! Extents: what a page is fitted to, against closed forms and clipping by hand.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::extent::Extent;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
-use hiddenline::page::{Page, PageOptions, Placement};
-use hiddenline::strokes::StrokeKind;
-use hiddenline::surface::lattice_extent;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::extent::Extent;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::page::{Page, PageOptions, Placement};
+use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::surface::lattice_extent;
 
 /// Looks along +y from the origin, so the image of a point is (x / y, z / y).
 fn perspective(near: f64) -> Camera {

@@ -1,11 +1,11 @@
 //! Named views and axes against closed forms.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::axes::{Titles, axes, text};
-use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::extent::Extent;
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::axes::{Titles, axes, text};
+use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::extent::Extent;
+use hiddenline::stages::strokes::StrokeKind;
 
 const CUBE: (DVec3, DVec3) = (DVec3::NEG_ONE, DVec3::ONE);
 
@@ -22,7 +22,7 @@ fn named_views_shorten_the_axes_as_the_textbooks_say() {
         (NamedView::Top, [1.0, 1.0, 0.0]),
     ] {
         let standpoint = Standpoint::Named { view, distance: None };
-        let camera = Framing { standpoint, ..Framing::default() }.camera(CUBE).expect("a camera");
+        let camera = View { standpoint, ..View::default() }.camera(CUBE).expect("a camera");
         let at = |p: DVec3| camera.image(p);
         let lengths = DVec3::AXES.map(|axis| at(axis).distance(at(DVec3::ZERO)));
         let off = lengths.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

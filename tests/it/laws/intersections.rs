@@ -9,11 +9,11 @@ use crate::scenes::{
     Model, P, Rng, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
 use glam::DVec3;
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::draw::{DrawOptions, HiddenLines, draw};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::model::scene::Scene;
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::StrokeKind;
 
 const INTERSECTIONS: LineSelection = LineSelection::NONE.with(StrokeKind::Intersection);
 
@@ -187,7 +187,7 @@ fn seen(scene: &TestScene, built: &Scene, engine: Engine) -> Vec<EngineEdge> {
     let settings = Settings { count_layers: true, ..Settings::default() };
     let (visibility, counts, _) = solve(&view, engine, &settings);
     assert_eq!(counts.checksum_failures, 0);
-    let drawn = view.drawn().iter().enumerate();
+    let drawn = view.selected().iter().enumerate();
     drawn
         .map(|(i, drawn)| EngineEdge {
             ends: built.line(drawn.edge).map(|end| built.points()[end as usize].to_array()),
@@ -303,7 +303,7 @@ fn a_wall_crosses_a_floor_also_where_that_runs_along_its_edges() {
     let with_edges = LineSelection::all_edges().with(StrokeKind::Intersection);
     for (selection, n) in [(INTERSECTIONS, 1), (with_edges, 0), (LineSelection::default(), 1)] {
         let view = ViewedScene::new(&scene, &camera(&sunk), selection, 30.0);
-        let drawn = view.drawn().iter().filter(|d| d.kind == StrokeKind::Intersection).count();
+        let drawn = view.selected().iter().filter(|d| d.kind == StrokeKind::Intersection).count();
         assert_eq!(drawn, n);
     }
 }

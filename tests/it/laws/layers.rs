@@ -118,7 +118,8 @@ fn imports(files: &[(String, String)]) -> Imports {
 /// Modules in the order of `src/lib.rs`.
 fn stages(files: &[(String, String)]) -> Vec<String> {
     let (_, text) = files.iter().find(|(module, _)| module == "lib").unwrap();
-    let declared = text.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+    let declared =
+        text.lines().filter_map(|line| line.trim().strip_prefix("pub mod ")?.strip_suffix(';'));
     declared.map(str::to_owned).collect()
 }
 

@@ -1,12 +1,12 @@
 //! Lines where materials or groups change.
 
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::model::scene::Scene;
-use hiddenline::read::read_bytes;
-use hiddenline::strokes::{Drawing, StrokeKind};
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::read::read_bytes;
+use hiddenline::stages::strokes::{StrokeKind, Strokes};
 
 /// Six unit squares in a row along x, in one plane: materials and groups change on the way, once back
 /// to an earlier one, once only in name, and once where the strip bends upwards.
@@ -16,7 +16,7 @@ usemtl red\nf 1 3 4 2\nf 3 5 6 4\nusemtl blue\nf 5 7 8 6\nusemtl red\nf 7 9 10 8
 g lid\nf 11 13 14 12
 ";
 
-fn drawn(lines: LineSelection) -> Drawing {
+fn drawn(lines: LineSelection) -> Strokes {
     let model = read_bytes("strip.obj", STRIP.as_bytes(), None).unwrap();
     let scene = Scene::new(model.mesh);
     let camera =
@@ -26,7 +26,7 @@ fn drawn(lines: LineSelection) -> Drawing {
     draw(&scene, &camera, &options, 100.0).drawing
 }
 
-fn count(drawing: &Drawing, kind: StrokeKind) -> usize {
+fn count(drawing: &Strokes, kind: StrokeKind) -> usize {
     drawing.iter().filter(|stroke| stroke.kind == kind).count()
 }
 

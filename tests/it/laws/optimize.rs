@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, dvec2};
-use hiddenline::optimize::estimate::{Motion, estimate_lines};
-use hiddenline::optimize::{Effort, Graph, Joints, Options, optimize_lines, order};
-use hiddenline::plot::{Layer, Pen, Plot, Polylines};
+use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
+use hiddenline::stages::optimize::{Effort, Graph, Joints, Options, optimize_lines, order};
+use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
 use proptest::prelude::*;
 
 type Lattice = (i64, i64);
@@ -405,10 +405,10 @@ fn layers_are_split_between_strokes() {
     let lines = polylines(&[stroke(0.0), stroke(1.0), stroke(2.0), stroke(3.0), stroke(4.0)]);
     let layer = Layer { number: 1, name: "visible".to_owned(), pen, lines, ..Layer::default() };
     let plot = Plot { width_mm: 200.0, height_mm: 10.0, layers: vec![layer], ..Plot::default() };
-    let split = hiddenline::optimize::split_by_distance(&plot, 250.0, None);
+    let split = hiddenline::stages::optimize::split_by_distance(&plot, 250.0, None);
     let parts: Vec<(u32, usize)> = split.layers.iter().map(|l| (l.number, l.lines.len())).collect();
     assert_eq!(parts, [(1, 2), (2, 2), (3, 1)]);
-    assert_eq!(hiddenline::optimize::split_by_distance(&plot, 500.0, None), plot);
+    assert_eq!(hiddenline::stages::optimize::split_by_distance(&plot, 500.0, None), plot);
 }
 
 #[test]

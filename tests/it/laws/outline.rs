@@ -4,11 +4,11 @@ use crate::laws::engines::{assert_truth, camera, mesh};
 use crate::oracle::EdgeTruth;
 use crate::oracle::compare::{Image, compare_strokes};
 use crate::scenes::{Model, P, Scene as TestScene, orthographic, perspective};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::edge::outline;
-use hiddenline::model::scene::Scene;
-use hiddenline::strokes::{Drawing, StrokeKind};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::engines::edge::outline;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::{StrokeKind, Strokes};
 use std::cell::Cell;
 use std::collections::HashMap;
 
@@ -29,7 +29,7 @@ fn outline_is_true(scene: &TestScene, edges: &[EdgeTruth]) -> Result<(), String>
     let outline = outline::find(&view);
     let position = |v: u32| built.mesh().positions()[v as usize].to_array();
     let mut found = HashMap::new();
-    for (i, drawn) in view.drawn().iter().enumerate() {
+    for (i, drawn) in view.selected().iter().enumerate() {
         let [a, b] = built.topology().edge(drawn.edge).map(position);
         let mut parts = outline.parts(i).to_vec();
         if b < a {
@@ -101,13 +101,13 @@ fn nothing_of_the_true_outline_is_left_out() {
     assert!(n_compared.get() > 0);
 }
 
-fn drawing(scene: &TestScene, lines: LineSelection) -> Drawing {
+fn drawing(scene: &TestScene, lines: LineSelection) -> Strokes {
     let options = DrawOptions { lines, apart_by_kind: true, ..DrawOptions::default() };
     let built = Scene::new(mesh(scene));
     draw(&built, &camera(scene), &options, 100.0).drawing
 }
 
-fn length(drawing: &Drawing, outline: bool) -> f64 {
+fn length(drawing: &Strokes, outline: bool) -> f64 {
     let strokes = drawing.iter().filter(|stroke| stroke.outline == outline);
     strokes.flat_map(|s| s.points.windows(2)).map(|pair| pair[0].distance(pair[1])).sum()
 }

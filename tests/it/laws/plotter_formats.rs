@@ -1,8 +1,8 @@
 //! HPGL, G-code, DXF and PDF, read back by small parsers that know nothing of the writers.
 
 use glam::{DVec2, dvec2};
-use hiddenline::plot::{Layer, Pen, Plot, Polylines};
-use hiddenline::write::{dxf, gcode, hpgl, pdf};
+use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
+use hiddenline::stages::write::{dxf, gcode, hpgl, pdf};
 
 fn plot(width_mm: f64, height_mm: f64, layers: &[&[&[(f64, f64)]]]) -> Plot {
     let layers = layers.iter().zip(1..).map(|(strokes, number)| {

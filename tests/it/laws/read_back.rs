@@ -2,10 +2,12 @@
 //! knows nothing of its writer, and compared with the plot in ink, page, color and width.
 
 use glam::{DVec2, dvec2};
-use hiddenline::optimize::estimate::{Motion, estimate_lines};
-use hiddenline::optimize::{Effort, Graph, Joints, Options, optimize_lines, split_by_distance};
-use hiddenline::plot::{Layer, Pen, Plot, Polylines};
-use hiddenline::write::{dxf, gcode, hpgl, pdf};
+use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
+use hiddenline::stages::optimize::{
+    Effort, Graph, Joints, Options, optimize_lines, split_by_distance,
+};
+use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
+use hiddenline::stages::write::{dxf, gcode, hpgl, pdf};
 
 fn polylines(strokes: &[&[(f64, f64)]]) -> Polylines {
     let mut lines = Polylines::default();
@@ -433,7 +435,7 @@ fn strokes_cut_by_distance_overlap_as_stated() {
 
 #[test]
 fn slanted_ink_that_nearly_overlaps_is_found_with_what_it_costs() {
-    use hiddenline::optimize::near_overlap;
+    use hiddenline::stages::optimize::near_overlap;
     let mut plot = plot();
     plot.layers.truncate(1);
     // Twenty pairs that share 20 mm, with two decimals as files have them.

@@ -1,14 +1,14 @@
 //! What a pen draws: chains, lines drawn once, contact, and short strokes.
 
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::draw::{DrawOptions, HiddenLines, draw};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
-use hiddenline::predicates::Sign;
-use hiddenline::strokes::Drawing;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::predicates::Sign;
+use hiddenline::stages::strokes::Strokes;
 
 const BOX_FACES: [[u32; 4]; 6] =
     [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -43,7 +43,7 @@ fn orthographic(eye: DVec3, up: DVec3) -> Camera {
     Camera::new(eye, DVec3::ZERO, up, Projection::Orthographic).unwrap()
 }
 
-fn drawn(scene: &Scene, camera: &Camera, options: &DrawOptions) -> Drawing {
+fn drawn(scene: &Scene, camera: &Camera, options: &DrawOptions) -> Strokes {
     draw(scene, camera, options, 100.0).drawing
 }
 
@@ -104,7 +104,7 @@ fn a_convex_solid_shows_the_edges_of_its_front_faces_whole() {
         let scene = unit_cube();
         let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
         let (visibility, ..) = solve(&view, Engine::Roberts, &Settings::default());
-        for (i, drawn) in view.drawn().iter().enumerate() {
+        for (i, drawn) in view.selected().iter().enumerate() {
             let uses = scene.topology().uses(drawn.edge);
             let in_front = uses.iter().any(|u| view.facing(u.face()) == Sign::Positive);
             let spans: Vec<_> =

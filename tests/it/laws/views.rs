@@ -1,8 +1,8 @@
 //! The camera against the projections of the literature, and the views that have names.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::camera::framing::{Framing, FramingError, NamedView, ProjectionKind, Standpoint};
-use hiddenline::camera::{Camera, CameraError, Projection};
+use hiddenline::stages::camera::framing::{NamedView, ProjectionKind, Standpoint, View, ViewError};
+use hiddenline::stages::camera::{Camera, CameraError, Projection};
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 30.0, near: 1e-6 };
 
@@ -70,7 +70,7 @@ const BOUNDS: (DVec3, DVec3) = (dvec3(0.1, 0.2, 0.3), dvec3(1.7, 2.3, 0.9));
 
 fn named(view: NamedView) -> Camera {
     let standpoint = Standpoint::Named { view, distance: None };
-    Framing { standpoint, ..Framing::default() }.camera(BOUNDS).expect("a good camera")
+    View { standpoint, ..View::default() }.camera(BOUNDS).expect("a good camera")
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn isometric_foreshortens_all_axes_exactly_alike() {
 fn diagonal_azimuth_is_exactly_diagonal() {
     let standpoint =
         Standpoint::Angles { azimuth_deg: 135.0, elevation_deg: 20.0, distance: Some(7.3) };
-    let framing = Framing { standpoint, ..Framing::default() };
+    let framing = View { standpoint, ..View::default() };
     let forward = framing.camera(BOUNDS).expect("a good camera").forward();
     assert_eq!(forward.x, forward.y);
     assert!((forward.length() - 7.3).abs() < 1e-12);
@@ -113,7 +113,7 @@ fn eye_is_where_the_angles_say() {
     let standpoint =
         Standpoint::Angles { azimuth_deg: 30.0, elevation_deg: 25.0, distance: Some(2.0) };
     let target = Some(dvec3(1.0, 2.0, 3.0));
-    let framing = Framing { standpoint, target, ..Framing::default() };
+    let framing = View { standpoint, target, ..View::default() };
     let eye = framing.camera(BOUNDS).expect("a good camera").eye();
     let (az, el) = (30_f64.to_radians(), 25_f64.to_radians());
     let expected =
@@ -123,7 +123,7 @@ fn eye_is_where_the_angles_say() {
 
 #[test]
 fn automatic_target_is_the_middle_of_the_box() {
-    let target = Framing::default().camera(BOUNDS).expect("a good camera").target();
+    let target = View::default().camera(BOUNDS).expect("a good camera").target();
     assert!(target.distance(dvec3(0.9, 1.25, 0.6)) < 1e-5, "{target}");
 }
 
@@ -137,7 +137,7 @@ fn automatic_distance_shows_the_whole_box() {
             elevation_deg: 25.0,
             distance: None,
         };
-        let camera = Framing { standpoint, ..Framing::default() }.camera(BOUNDS);
+        let camera = View { standpoint, ..View::default() }.camera(BOUNDS);
         let camera = camera.expect("a good camera");
         for corner in 0..8 {
             let pick = |bit: u32, axis: usize| {
@@ -153,16 +153,16 @@ fn automatic_distance_shows_the_whole_box() {
 fn up_along_the_view_is_an_error_when_given_and_y_by_default() {
     let standpoint = Standpoint::Eye(dvec3(0.5, 0.5, 9.0));
     let target = Some(dvec3(0.5, 0.5, 0.0));
-    let framing = Framing { standpoint, target, ..Framing::default() };
+    let framing = View { standpoint, target, ..View::default() };
     assert_eq!(framing.camera(BOUNDS).map(|camera| camera.up()), Ok(DVec3::Y));
-    let given = Framing { up: Some(DVec3::Z), ..framing };
-    assert_eq!(given.camera(BOUNDS), Err(FramingError::Camera(CameraError::UpParallel)));
+    let given = View { up: Some(DVec3::Z), ..framing };
+    assert_eq!(given.camera(BOUNDS), Err(ViewError::Camera(CameraError::UpParallel)));
 }
 
 #[test]
 fn named_views_can_be_perspective() {
     let standpoint = Standpoint::Named { view: NamedView::Isometric, distance: None };
     let projection = Some(ProjectionKind::Perspective);
-    let camera = Framing { standpoint, projection, ..Framing::default() }.camera(BOUNDS);
+    let camera = View { standpoint, projection, ..View::default() }.camera(BOUNDS);
     assert_eq!(camera.map(|camera| camera.projection()), Ok(PERSPECTIVE));
 }

@@ -4,15 +4,15 @@ use crate::laws::engines::{camera, mesh};
 use crate::oracle::compare::{EngineEdge, EngineSpan, compare, truth_of};
 use crate::scenes::{Rng, Scene as TestScene, number_of_scenes, random};
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::{LineSelection, ViewSegments, ViewedScene};
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::surface::tin;
-use hiddenline::model::arrange::{Arrangement, Pose};
-use hiddenline::model::mesh::{Mesh, MeshError, PolygonSoup};
-use hiddenline::model::scene::{LineSource, Scene};
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewSegments, ViewedScene};
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::surface::tin;
+use hiddenline::stages::model::arrange::{Arrangement, Pose};
+use hiddenline::stages::model::mesh::{Mesh, MeshError, PolygonSoup};
+use hiddenline::stages::model::scene::{LineSource, Scene};
+use hiddenline::stages::strokes::StrokeKind;
 
 const WIRES: LineSelection = LineSelection::NONE.with(StrokeKind::Wire);
 
@@ -38,7 +38,7 @@ fn spans_of_wires(scene: &Scene, camera: &Camera, engine: Engine) -> Vec<EngineE
         spans.map(|s| EngineSpan { t0: s.t0, t1: s.t1, qi: s.qi }).collect()
     };
     let position = |point: u32| scene.points()[point as usize].to_array();
-    let drawn = view.drawn().iter().enumerate();
+    let drawn = view.selected().iter().enumerate();
     drawn
         .map(|(i, drawn)| EngineEdge { ends: view.line(drawn.edge).map(position), spans: span(i) })
         .collect()
@@ -240,7 +240,7 @@ fn segments_of_a_view_are_hidden_as_lines_of_the_scene_are() {
             let spans = |view: &ViewedScene| {
                 let visibility = solve(view, engine, &COUNTED).0;
                 let line =
-                    |i: usize| (view.line(view.drawn()[i].edge), visibility.spans(i).to_vec());
+                    |i: usize| (view.line(view.selected()[i].edge), visibility.spans(i).to_vec());
                 (0..visibility.len()).map(line).collect::<Vec<_>>()
             };
             let found = spans(&of_view);

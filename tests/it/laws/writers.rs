@@ -1,16 +1,16 @@
 //! Page and writers: what is on paper, where, and in which form.
 
 use glam::{DVec2, DVec3, dvec2};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::draw::HiddenLines;
-use hiddenline::page::{
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::draw::HiddenLines;
+use hiddenline::stages::page::{
     Dash, Orientation, Page, PageError, PageOptions, Paper, PlacedPlot, Placement, PlotOptions,
 };
-use hiddenline::plot::{Layer, Pen, Plot, Polylines};
-use hiddenline::strokes::{Drawing, StrokeKind};
-use hiddenline::write::png::{PngError, Resolution};
-use hiddenline::write::svg::StrokeElement;
-use hiddenline::write::{json, png, svg};
+use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
+use hiddenline::stages::strokes::{StrokeKind, Strokes};
+use hiddenline::stages::write::png::{PngError, Resolution};
+use hiddenline::stages::write::svg::StrokeElement;
+use hiddenline::stages::write::{json, png, svg};
 
 fn orthographic() -> Camera {
     Camera::new(DVec3::NEG_Y, DVec3::ZERO, DVec3::Z, Projection::Orthographic).expect("good")
@@ -25,8 +25,8 @@ fn dvec3_y(y: f64) -> DVec3 {
     DVec3::new(0.0, y, 0.0)
 }
 
-fn drawing(strokes: &[&[DVec2]]) -> Drawing {
-    let mut drawing = Drawing::default();
+fn drawing(strokes: &[&[DVec2]]) -> Strokes {
+    let mut drawing = Strokes::default();
     for points in strokes {
         drawing.push(StrokeKind::Crease, 0, points.iter().copied());
     }
@@ -44,7 +44,7 @@ fn options(hidden: HiddenLines) -> PlotOptions {
     }
 }
 
-fn placed(drawing: &Drawing, camera: &Camera, page: &PageOptions) -> PlacedPlot {
+fn placed(drawing: &Strokes, camera: &Camera, page: &PageOptions) -> PlacedPlot {
     Page::place(&drawing.extent(camera), camera, page)
         .expect("fits")
         .plot(drawing, options(HiddenLines::None))
@@ -148,13 +148,13 @@ fn points_far_out_do_not_shrink_a_perspective_drawing() {
 #[test]
 fn margins_wider_than_the_page_are_an_error() {
     let options = PageOptions { margin_mm: 105.0, ..PageOptions::default() };
-    let page = Page::place(&Drawing::default().extent(&orthographic()), &orthographic(), &options);
+    let page = Page::place(&Strokes::default().extent(&orthographic()), &orthographic(), &options);
     assert!(matches!(page, Err(PageError::Margins { .. })), "{page:?}");
 }
 
 #[test]
 fn dashes_are_real_segments_on_the_hidden_layer() {
-    let mut drawing = Drawing::default();
+    let mut drawing = Strokes::default();
     drawing.push(StrokeKind::Crease, 0, [dvec2(0.0, 0.0), dvec2(4.0, 0.0)]);
     drawing.push(StrokeKind::Crease, 2, [dvec2(0.0, 1.0), dvec2(4.0, 1.0)]);
     let page =
@@ -235,7 +235,7 @@ fn svg_can_be_polylines() {
 fn json_numbers_read_back_as_they_were() {
     let camera = perspective();
     let points = [dvec2(0.1 + 0.2, 1.0 / 3.0), dvec2(-1e-300, f64::MAX)];
-    let mut drawing = Drawing::default();
+    let mut drawing = Strokes::default();
     drawing.push(StrokeKind::Silhouette, 0, points);
     drawing.push(StrokeKind::Mesh, 3, points);
     let page = Page::place(&self::drawing(&[]).extent(&camera), &camera, &PageOptions::default())

@@ -2,9 +2,9 @@
 
 use super::exact::{Int, Ratio, common_exponent, cross, decomposed, dot, minus, scaled, sign};
 use glam::{DVec2, DVec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::face::{PaintedPiece, Painting};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::engines::face::{PaintedPiece, Painting};
+use hiddenline::stages::model::scene::Scene;
 
 /// Samples nearer than this to the border of any piece, in parts of the image's size, are not judged.
 const BORDER: f64 = 1e-7;

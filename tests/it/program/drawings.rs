@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use hiddenline::write::hpgl;
+use hiddenline::stages::write::hpgl;
 use tempfile::TempDir;
 
 use super::{CUBE, assert_fails, hiddenline, text};

@@ -6,12 +6,12 @@ use std::process::Command;
 use std::time::Duration;
 
 use glam::{DVec2, dvec2};
-use hiddenline::optimize::estimate::{Motion, estimate_lines};
-use hiddenline::optimize::{
+use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
+use hiddenline::stages::optimize::{
     Effort, Graph, JOIN_TOLERANCE_MM, Joints, Options, optimize, optimize_lines, order,
     remove_overlaps,
 };
-use hiddenline::plot::Polylines;
+use hiddenline::stages::plot::Polylines;
 use tempfile::TempDir;
 
 use super::{CUBE, assert_fails, command, hiddenline, text};
@@ -298,21 +298,24 @@ fn wire(n: &str) -> Option<Polylines> {
         return None;
     }
     let text = fs::read_to_string(file).unwrap();
-    let read = hiddenline::read_svg::read(&text, &hiddenline::read_svg::SvgOptions::default());
+    let read = hiddenline::stages::read_svg::read(
+        &text,
+        &hiddenline::stages::read_svg::SvgOptions::default(),
+    );
     Some(read.unwrap().plot.layers.swap_remove(0).lines)
 }
 
 #[test]
 fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
     let Some(lines) = wire("2000") else { return };
-    let layer = hiddenline::plot::Layer {
+    let layer = hiddenline::stages::plot::Layer {
         number: 1,
         name: "lines".into(),
-        pen: hiddenline::plot::Pen { width_mm: 0.3, color: "#000000".into() },
+        pen: hiddenline::stages::plot::Pen { width_mm: 0.3, color: "#000000".into() },
         lines,
         ..Default::default()
     };
-    let plot = hiddenline::plot::Plot { layers: vec![layer], ..Default::default() };
+    let plot = hiddenline::stages::plot::Plot { layers: vec![layer], ..Default::default() };
     let (done, _) = optimize(&plot, &Options::default());
     let work = estimate_lines(&done.layers[0].lines, &Motion::SAXI);
     eprintln!("{work:?}");

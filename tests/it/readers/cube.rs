@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::read::{ModelFormat, read_bytes};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::read::{ModelFormat, read_bytes};
 
 use super::{assert_message, good, refused};
 

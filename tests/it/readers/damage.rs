@@ -1,6 +1,6 @@
 //! Sound files with random damage.
 
-use hiddenline::read::read_bytes;
+use hiddenline::stages::read::read_bytes;
 use proptest::prelude::*;
 
 use super::cube::{binary_stl, ply_cube, text_stl};

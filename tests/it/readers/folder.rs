@@ -1,6 +1,6 @@
 //! The folder of real and malformed models beside the repository.
 
-use hiddenline::read::read_file;
+use hiddenline::stages::read::read_file;
 
 use super::assert_message;
 use crate::models;

@@ -1,6 +1,8 @@
 //! Formulas: meaning, error columns, hostile input.
 
-use hiddenline::surface::formula::{CONSTANTS, FUNCTIONS, Formula, MAX_LENGTH, Problem, Variables};
+use hiddenline::stages::surface::formula::{
+    CONSTANTS, FUNCTIONS, Formula, MAX_LENGTH, Problem, Variables,
+};
 
 fn value(text: &str, x: f64, y: f64) -> f64 {
     match Formula::parse(text, Variables::Plane) {

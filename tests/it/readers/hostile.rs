@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use hiddenline::read::{Fault, Notice, read_file};
+use hiddenline::stages::read::{Fault, Notice, read_file};
 
 use super::cube::{binary_stl, text_stl};
 use super::{assert_message, good, refused};

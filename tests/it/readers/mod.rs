@@ -10,7 +10,7 @@ mod svg;
 mod svg_shown;
 mod weld;
 
-use hiddenline::read::{Model, ReadError, read_bytes};
+use hiddenline::stages::read::{Model, ReadError, read_bytes};
 
 fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Model, ReadError> {
     read_bytes(name, bytes.as_ref(), None)

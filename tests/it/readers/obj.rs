@@ -1,7 +1,7 @@
 //! OBJ: lines, numbers, parts, and what is skipped.
 
 use glam::dvec3;
-use hiddenline::read::Notice;
+use hiddenline::stages::read::Notice;
 
 use super::{assert_message, good, refused};
 

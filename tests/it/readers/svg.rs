@@ -1,7 +1,7 @@
 //! Reading foreign SVGs: sizes, shapes, layers, and files made to do harm.
 
 use glam::{DVec2, dvec2};
-use hiddenline::read_svg::{LineSvg, SvgError, SvgOptions, read};
+use hiddenline::stages::read_svg::{LineSvg, SvgError, SvgOptions, read};
 
 fn svg(attributes: &str, content: &str) -> String {
     format!(

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flate2::{Compression, write::GzEncoder};
 use glam::{DVec2, dvec2};
-use hiddenline::read_svg::{LineSvg, SvgError, SvgOptions, read, read_bytes};
+use hiddenline::stages::read_svg::{LineSvg, SvgError, SvgOptions, read, read_bytes};
 
 fn page(content: &str) -> String {
     format!(

@@ -1,7 +1,7 @@
 //! Vertices that are made one because they are near each other.
 
 use glam::{DVec3, dvec3};
-use hiddenline::model::mesh::{Mesh, MeshError, PolygonSoup};
+use hiddenline::stages::model::mesh::{Mesh, MeshError, PolygonSoup};
 use proptest::prelude::*;
 
 fn soup_of_points(points: &[DVec3]) -> Mesh {

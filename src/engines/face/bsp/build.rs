@@ -44,7 +44,9 @@ const ALONE: usize = 512;
 pub struct TooManyFragments;
 
 /// Whether a tree may be begun, guessed from a sample of the faces.
-pub(in crate::engines::face) fn check_piercings(scene: &Scene) -> Result<(), TooManyFragments> {
+pub(in crate::stages::engines::face) fn check_piercings(
+    scene: &Scene,
+) -> Result<(), TooManyFragments> {
     let n_triangles = scene.triangles().len() as u64;
     if piercing::estimate(scene) > MAX_PIERCINGS * n_triangles {
         return Err(TooManyFragments);
@@ -79,7 +81,7 @@ enum Grown {
 
 impl Forest {
     /// Grows a tree from each set of fragments; their roots.
-    pub(in crate::engines::face) fn grow(
+    pub(in crate::stages::engines::face) fn grow(
         &mut self,
         scene: &Scene,
         planes: &Planes,

@@ -32,7 +32,7 @@ enum Visit {
 
 impl Forest {
     /// Walks one tree.
-    pub(in crate::engines::face) fn walk<'a>(
+    pub(in crate::stages::engines::face) fn walk<'a>(
         &'a self,
         planes: &'a Planes<'a>,
         root: u32,

@@ -29,7 +29,7 @@ impl Horizon {
     /// it is not beyond them. Where the diagonal joins left and right, far beyond it makes the far
     /// edges concave; then near within them means that both near edges are, and so is the diagonal.
     #[inline]
-    pub(in crate::engines::surface) fn advance<S: Samples>(
+    pub(in crate::stages::engines::surface) fn advance<S: Samples>(
         &mut self,
         plane: &HorizonPlane<S>,
         cell: &Cell,

@@ -7,16 +7,16 @@ use crate::engines::surface::segment::{
 
 /// Where a piece begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::engines::surface) struct Break {
-    pub(in crate::engines::surface) u: f64,
+pub(in crate::stages::engines::surface) struct Break {
+    pub(in crate::stages::engines::surface) u: f64,
     /// Bound on the error of `u`.
-    pub(in crate::engines::surface) error: f64,
-    pub(in crate::engines::surface) kind: Kind,
+    pub(in crate::stages::engines::surface) error: f64,
+    pub(in crate::stages::engines::surface) kind: Kind,
 }
 
 /// What a break is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::engines::surface) enum Kind {
+pub(in crate::stages::engines::surface) enum Kind {
     /// The strip's border, at exactly `u`.
     Border,
     /// The u of a sample.
@@ -27,7 +27,7 @@ pub(in crate::engines::surface) enum Kind {
 
 /// A place on a segment, as a visible run reports its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::engines::surface) enum Stop {
+pub(in crate::stages::engines::surface) enum Stop {
     /// The segment's left end.
     Left,
     /// The segment's right end.

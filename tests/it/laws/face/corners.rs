@@ -3,10 +3,10 @@
 use crate::laws::engines::mesh;
 use crate::oracle::exact::{Int, Plane, Point, negated, plane_through, scaled, sign, value};
 use crate::scenes::{Model, Rng, orthographic, random};
-use hiddenline::engines::face::fragment::Fragment;
-use hiddenline::engines::face::{bsp, octree};
-use hiddenline::model::scene::Scene;
-use hiddenline::predicates::{Place, PlaneName, Planes, Sign};
+use hiddenline::stages::engines::face::fragment::Fragment;
+use hiddenline::stages::engines::face::{bsp, octree};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::predicates::{Place, PlaneName, Planes, Sign};
 
 /// Numbers count in this power of two: finer than any that comes up.
 const UNIT: i32 = -400;

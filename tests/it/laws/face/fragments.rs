@@ -3,10 +3,10 @@
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::{number_of_scenes, orthographic, random};
 use glam::DVec3;
-use hiddenline::engines::face::fragment::Fragment;
-use hiddenline::engines::face::painting::NO_LINE;
-use hiddenline::engines::face::{bsp, depth_sort, octree};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::engines::face::fragment::Fragment;
+use hiddenline::stages::engines::face::painting::NO_LINE;
+use hiddenline::stages::engines::face::{bsp, depth_sort, octree};
+use hiddenline::stages::model::scene::Scene;
 use std::collections::HashMap;
 
 /// Largest error of a sum of rounded lengths or areas, in parts of it.

@@ -8,8 +8,8 @@
 use super::{ENGINES, EXACT};
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::{Model, Rng, orthographic, perspective};
-use hiddenline::engines::face::Painting;
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::engines::face::Painting;
+use hiddenline::stages::model::scene::Scene;
 
 type P = [i64; 3];
 

@@ -6,9 +6,9 @@ mod hides;
 mod models;
 mod order;
 
-use hiddenline::camera::Camera;
-use hiddenline::engines::face::{Painting, bsp, depth_sort, octree, weiler_atherton};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::engines::face::{Painting, bsp, depth_sort, octree, weiler_atherton};
+use hiddenline::stages::model::scene::Scene;
 
 /// An engine without settings.
 type Solve = fn(&Scene, &Camera) -> Painting;

@@ -3,10 +3,10 @@
 use super::{ENGINES, EXACT};
 use crate::models;
 use crate::oracle::sight_lines::SightLines;
-use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
-use hiddenline::engines::face::{bsp, depth_sort, piercing};
-use hiddenline::model::scene::Scene;
-use hiddenline::read::read_file;
+use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
+use hiddenline::stages::engines::face::{bsp, depth_sort, piercing};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::read::read_file;
 
 const MODELS: [&str; 14] = [
     "benchy_wheel.stl",
@@ -32,7 +32,7 @@ fn paintings_of_models_are_what_exact_rays_meet() {
         let scene = Scene::new(mesh);
         let bounds = scene.mesh().bounds().unwrap();
         let top = Standpoint::Named { view: NamedView::Top, distance: None };
-        for framing in [Framing::default(), Framing { standpoint: top, ..Framing::default() }] {
+        for framing in [View::default(), View { standpoint: top, ..View::default() }] {
             let camera = framing.camera(bounds).unwrap();
             let world = SightLines::new(&scene, &camera);
             for (engine, solve) in ENGINES.into_iter().chain([EXACT]) {

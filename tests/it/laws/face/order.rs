@@ -7,8 +7,8 @@ use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
-use hiddenline::engines::face::{bsp, depth_sort, octree, piercing};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::engines::face::{bsp, depth_sort, octree, piercing};
+use hiddenline::stages::model::scene::Scene;
 
 /// Judges all engines on one scene; the number of points judged by each.
 fn judge(scene: &TestScene, n: u32) -> u32 {

@@ -6,13 +6,13 @@ use crate::scenes::{
     Model, Scene as TestScene, number_of_scenes, orthographic, perspective, random,
 };
 use glam::{DVec2, DVec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::face::images::Images;
-use hiddenline::engines::face::weiler_atherton::solve;
-use hiddenline::model::scene::Scene;
-use hiddenline::strokes::StrokeKind;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::engines::face::images::Images;
+use hiddenline::stages::engines::face::weiler_atherton::solve;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::StrokeKind;
 
 type Segment = [DVec2; 2];
 

@@ -4,17 +4,17 @@ use super::built;
 use crate::models;
 use crate::scenes::{Model, Scene as TestScene, orthographic};
 use glam::{DVec2, DVec3, dvec2};
-use hiddenline::camera::Camera;
-use hiddenline::camera::framing::Framing;
-use hiddenline::engines::face::FaceEngine;
-use hiddenline::extent::Extent;
-use hiddenline::model::scene::Scene;
-use hiddenline::page::{Dash, Page, PageOptions, Placement, PlotOptions};
-use hiddenline::plot::{Fills, Plot};
-use hiddenline::shading::fill::{FillError, FillOptions, Filled, Palette, Show, fill};
-use hiddenline::strokes::Drawing;
-use hiddenline::write::png::Resolution;
-use hiddenline::write::{dxf, gcode, pdf, png};
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::engines::face::FaceEngine;
+use hiddenline::stages::extent::Extent;
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::page::{Dash, Page, PageOptions, Placement, PlotOptions};
+use hiddenline::stages::plot::{Fills, Plot};
+use hiddenline::stages::shading::fill::{FillError, FillOptions, Filled, Palette, Show, fill};
+use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::write::png::Resolution;
+use hiddenline::stages::write::{dxf, gcode, pdf, png};
 
 /// A unit cube with its front, right and top in view.
 fn cube() -> TestScene {
@@ -44,7 +44,7 @@ fn plot(filled: &Filled, camera: &Camera, options: &PageOptions, seam_mm: f64) -
         title: String::new(),
         source: String::new(),
     };
-    let placed = page.plot(&Drawing::default(), plot).with_fills(&page, filled, seam_mm);
+    let placed = page.plot(&Strokes::default(), plot).with_fills(&page, filled, seam_mm);
     (placed.plot, placed.cropped)
 }
 
@@ -124,7 +124,7 @@ fn both_sides_of_a_face_are_lit_alike() {
 fn inks_lie_beside_each_other_whatever_the_engine() {
     let Some(mesh) = models::get("spot_control_quads.obj") else { return };
     let scene = Scene::new(mesh);
-    let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
+    let camera = View::default().camera(scene.mesh().bounds().unwrap()).unwrap();
     let sum = |filled: &Filled| filled.layers.iter().map(|layer| area(&layer.fills)).sum::<f64>();
     let exact = FillOptions { engine: FaceEngine::WeilerAtherton, ..FillOptions::default() };
     let expected = sum(&fill(&scene, &camera, &exact).unwrap());
@@ -222,7 +222,7 @@ fn areas_are_cropped_at_the_margins() {
 fn no_paper_shines_through_between_areas() {
     let Some(mesh) = models::get("spot_control_quads.obj") else { return };
     let scene = Scene::new(mesh);
-    let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
+    let camera = View::default().camera(scene.mesh().bounds().unwrap()).unwrap();
     let options = FillOptions { paint: Some([0, 0, 255]), ..FillOptions::default() };
     let filled = fill(&scene, &camera, &options).unwrap();
     let (plot, _) = plot(&filled, &camera, &PageOptions::default(), 0.05);

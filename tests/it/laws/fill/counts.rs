@@ -7,13 +7,13 @@ use crate::program::fill::fill;
 use crate::program::text;
 use crate::scenes::{Model, orthographic, perspective};
 use glam::DVec2;
-use hiddenline::camera::framing::Framing;
-use hiddenline::engines::face::warnock::{Subdivision, WarnockOptions};
-use hiddenline::engines::face::{
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::engines::face::warnock::{Subdivision, WarnockOptions};
+use hiddenline::stages::engines::face::{
     FaceEngine, FaceOptions, FaceWork, Prepared, bsp, octree, warnock,
 };
-use hiddenline::engines::image::raster::Corners;
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::engines::image::raster::Corners;
+use hiddenline::stages::model::scene::Scene;
 use serde_json::Value;
 
 /// The `counts` that `fill --stats` prints for a model seen from above.
@@ -125,7 +125,7 @@ fn cow() -> Scene {
 fn a_fine_mesh_hides_its_own_back() {
     let scene = cow();
     let tree = octree::Octree::new(&scene).unwrap();
-    let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
+    let camera = View::default().camera(scene.mesh().bounds().unwrap()).unwrap();
     let (seen, hidden) = tree.paint_seen(&scene, &camera);
     let all = tree.paint(&scene, &camera);
     let n = tree.fragments().len() as u64;

@@ -2,13 +2,13 @@
 //! nesting does not depend on the stack.
 
 use glam::{DVec2, DVec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::face::{
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::engines::face::{
     FaceEngine, FaceError, FaceOptions, FaceWork, Prepared, depth_sort, weiler_atherton,
 };
-use hiddenline::engines::image::{PixelMap, painter};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::engines::image::{PixelMap, painter};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
 
 use crate::scenes::Rng;
 
@@ -49,7 +49,7 @@ fn from_above() -> Camera {
 
 const COARSE: FaceOptions = FaceOptions {
     leaf: Some(0.5),
-    subdivision: hiddenline::engines::face::warnock::Subdivision::Regular,
+    subdivision: hiddenline::stages::engines::face::warnock::Subdivision::Regular,
 };
 
 #[test]

@@ -10,9 +10,9 @@ mod warnock;
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::Scene as TestScene;
 use glam::DVec2;
-use hiddenline::camera::Camera;
-use hiddenline::engines::face::Painting;
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::engines::face::Painting;
+use hiddenline::stages::model::scene::Scene;
 
 fn built(scene: &TestScene) -> (Scene, Camera) {
     (Scene::new(mesh(scene)), camera(scene))

@@ -4,9 +4,9 @@ use super::built;
 use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{Model, Scene as TestScene, number_of_scenes, orthographic, random};
 use glam::DVec2;
-use hiddenline::engines::face::images::Images;
-use hiddenline::engines::face::region::Region;
-use hiddenline::engines::face::weiler_atherton::solve;
+use hiddenline::stages::engines::face::images::Images;
+use hiddenline::stages::engines::face::region::Region;
+use hiddenline::stages::engines::face::weiler_atherton::solve;
 
 /// Rogers' variant of Warnock's pair, seen along z.
 pub(super) fn warnocks_pair() -> TestScene {

@@ -7,12 +7,14 @@ use crate::models;
 use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{Model, number_of_scenes, orthographic, random};
 use glam::{DVec2, dvec2};
-use hiddenline::camera::framing::Framing;
-use hiddenline::engines::face::images::Images;
-use hiddenline::engines::face::warnock::{Subdivision, WarnockCounts, WarnockOptions, solve};
-use hiddenline::engines::face::{Painting, weiler_atherton};
-use hiddenline::engines::image::{self, PixelMap, Raster, painter};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::framing::View;
+use hiddenline::stages::engines::face::images::Images;
+use hiddenline::stages::engines::face::warnock::{
+    Subdivision, WarnockCounts, WarnockOptions, solve,
+};
+use hiddenline::stages::engines::face::{Painting, weiler_atherton};
+use hiddenline::stages::engines::image::{self, PixelMap, Raster, painter};
+use hiddenline::stages::model::scene::Scene;
 
 const BOTH: [Subdivision; 2] = [Subdivision::Regular, Subdivision::Vertices];
 
@@ -113,7 +115,7 @@ fn windows_show_what_rays_meet_except_near_borders() {
 fn both_ways_of_dividing_give_one_picture() {
     let Some(mesh) = models::get("spot_control_quads.obj") else { return };
     let scene = Scene::new(mesh);
-    let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
+    let camera = View::default().camera(scene.mesh().bounds().unwrap()).unwrap();
     let exact = weiler_atherton::solve(&scene, &camera).unwrap().0;
     let images = Images::new(&scene, &camera);
     let (low, high) = images.bounds;

@@ -3,8 +3,8 @@
 use super::{built, fitted};
 use crate::scenes::{number_of_scenes, random};
 use glam::DVec3;
-use hiddenline::engines::image::a_buffer::{SIDE, Share, solve as resolve};
-use hiddenline::engines::image::{ImageEngine, NOTHING, Raster, solve};
+use hiddenline::stages::engines::image::a_buffer::{SIDE, Share, solve as resolve};
+use hiddenline::stages::engines::image::{ImageEngine, NOTHING, Raster, solve};
 use std::collections::BTreeMap;
 
 /// The shares in each pixel.

@@ -4,11 +4,11 @@ use super::{built, face, fitted};
 use crate::models;
 use crate::scenes::{number_of_scenes, random};
 use glam::DVec2;
-use hiddenline::camera::Camera;
-use hiddenline::camera::framing::{Framing, NamedView, Standpoint};
-use hiddenline::engines::image::raster::RasterTriangle;
-use hiddenline::engines::image::{ImageEngine, NOTHING, Raster, painter, solve};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
+use hiddenline::stages::engines::image::raster::RasterTriangle;
+use hiddenline::stages::engines::image::{ImageEngine, NOTHING, Raster, painter, solve};
+use hiddenline::stages::model::scene::Scene;
 
 /// All but the painter, who does not promise it, and the z-buffer, which they are compared with.
 const OTHERS: [ImageEngine; 4] =
@@ -58,13 +58,13 @@ fn engines_agree_on_models() {
     assert!(paths.len() >= least, "only {} models", paths.len());
     for path in &paths {
         let name = models::name(path);
-        let scene = Scene::new(hiddenline::read::read_file(path, None).unwrap().mesh);
+        let scene = Scene::new(hiddenline::stages::read::read_file(path, None).unwrap().mesh);
         let bounds = scene.mesh().bounds().unwrap();
-        let named = |view| Framing {
+        let named = |view| View {
             standpoint: Standpoint::Named { view, distance: None },
-            ..Framing::default()
+            ..View::default()
         };
-        let framings = [Framing::default(), named(NamedView::Isometric), named(NamedView::Top)];
+        let framings = [View::default(), named(NamedView::Isometric), named(NamedView::Top)];
         // Large models show in one view what there is to show.
         let n_views = if scene.triangles().len() > 15_000 { 1 } else { framings.len() };
         for framing in &framings[..n_views] {
@@ -148,7 +148,7 @@ fn the_painter_paints_what_the_z_buffer_shows() {
     for name in ["openscad_csg.stl", "kenney_street.obj", "spot.obj", "cornell_box_negidx.obj"] {
         let Some(mesh) = models::get(name) else { return };
         let scene = Scene::new(mesh);
-        let camera = Framing::default().camera(scene.mesh().bounds().unwrap()).unwrap();
+        let camera = View::default().camera(scene.mesh().bounds().unwrap()).unwrap();
         let (differing, shown) = painted_otherwise(name, &scene, &camera, (240, 180));
         eprintln!("{name}: {differing} of {shown} pixels differ where depths agree");
         assert!(differing * 100 < shown, "{name}: {differing} of {shown} pixels differ");

@@ -10,10 +10,10 @@ mod warnock;
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::Scene as TestScene;
 use glam::DVec2;
-use hiddenline::camera::Camera;
-use hiddenline::engines::image::raster::Corners;
-use hiddenline::engines::image::{NOTHING, PixelMap, Raster};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::engines::image::raster::Corners;
+use hiddenline::stages::engines::image::{NOTHING, PixelMap, Raster};
+use hiddenline::stages::model::scene::Scene;
 
 /// The scene, as large as fits into a picture.
 fn fitted(scene: &Scene, camera: &Camera, size: (u32, u32)) -> (PixelMap, Raster) {

@@ -2,8 +2,8 @@
 
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::{Model, orthographic};
-use hiddenline::model::scene::Scene;
-use hiddenline::shading::preview::{PreviewOptions, Show, write};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::shading::preview::{PreviewOptions, Show, write};
 
 /// Columns and rows.
 const SIZE: (u32, u32) = (40, 40);

@@ -7,7 +7,7 @@ use super::{built, face, fitted};
 use crate::oracle::sight_lines::SightLines;
 use crate::scenes::{number_of_scenes, random};
 use glam::DVec2;
-use hiddenline::engines::image::{ImageEngine, solve};
+use hiddenline::stages::engines::image::{ImageEngine, solve};
 
 #[test]
 fn pixels_show_what_sight_lines_meet() {

@@ -4,12 +4,12 @@
 use super::{face, fitted};
 use crate::models;
 use glam::DVec2;
-use hiddenline::camera::Camera;
-use hiddenline::camera::framing::{Framing, Standpoint};
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::{DrawOptions, draw};
-use hiddenline::engines::image::{ImageEngine, solve};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::Camera;
+use hiddenline::stages::camera::framing::{Standpoint, View};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::engines::image::{ImageEngine, solve};
+use hiddenline::stages::model::scene::Scene;
 
 #[test]
 fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {
@@ -19,9 +19,7 @@ fn visible_strokes_lie_on_borders_of_pixels_and_cover_the_outline() {
         let scene = Scene::new(mesh);
         let from_below =
             Standpoint::Angles { azimuth_deg: 205.0, elevation_deg: -31.0, distance: None };
-        for framing in
-            [Framing::default(), Framing { standpoint: from_below, ..Framing::default() }]
-        {
+        for framing in [View::default(), View { standpoint: from_below, ..View::default() }] {
             let camera = framing.camera(scene.mesh().bounds().unwrap()).unwrap();
             check(name, &scene, &camera);
         }

@@ -4,7 +4,7 @@
 //! y = x they are equally near, and the triangle, being the first, is seen.
 
 use glam::DVec3;
-use hiddenline::engines::image::{ImageEngine, NOTHING, Raster, solve};
+use hiddenline::stages::engines::image::{ImageEngine, NOTHING, Raster, solve};
 
 const A: [[f64; 3]; 3] = [[18.5, 12.5, 0.0], [22.5, 16.5, 0.0], [14.5, 22.5, 14.0]];
 const B: [[f64; 3]; 4] =

@@ -1,7 +1,7 @@
 //! What is visible of the lines of a grid, by brute force in integers, straight from the
 //! definition: every edge against every triangle.
 
-use hiddenline::surface::Grid;
+use hiddenline::stages::surface::Grid;
 
 /// Twice as many bits as any determinant below needs for coordinates under 2¹⁵.
 type Int = i128;

@@ -7,8 +7,8 @@
 use std::collections::HashSet;
 use std::time::{Duration, Instant};
 
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{
     Duplicates, HeightOptions, MAX_SAMPLES, ScatteredPoints, delaunay, read_heights,
 };
 

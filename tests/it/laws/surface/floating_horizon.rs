@@ -1,9 +1,9 @@
 //! Floating horizon against the sentence that defines it.
 
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::engines::surface::floating_horizon::{self, Family};
-use hiddenline::surface::Grid;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::engines::surface::floating_horizon::{self, Family};
+use hiddenline::stages::surface::Grid;
 
 use super::brute;
 use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, intervals, rough};

@@ -1,6 +1,6 @@
 //! Height files of all kinds: the numbers that are read are those that were written.
 
-use hiddenline::surface::{Grid, HeightNote, HeightOptions, read_heights};
+use hiddenline::stages::surface::{Grid, HeightNote, HeightOptions, read_heights};
 
 const PLAIN: HeightOptions = HeightOptions { x: None, y: None, flip_y: false, nodata: None };
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use hiddenline::strokes::StrokeKind;
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{
+use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{
     Grid, HeightOptions, LatticeLines, LinedMesh, TrimmedGrid, read_heights,
 };
 

@@ -1,11 +1,13 @@
 //! Max-Min patches against brute force in integers.
 
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::ViewedScene;
-use hiddenline::engines::edge::{Engine, Settings, solve as engine};
-use hiddenline::engines::surface::{CellOrder, GridPieces, SurfaceError, SurfaceSide, max_min};
-use hiddenline::surface::{Grid, LatticeLines, LinedMesh};
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::ViewedScene;
+use hiddenline::stages::engines::edge::{Engine, Settings, solve as engine};
+use hiddenline::stages::engines::surface::{
+    CellOrder, GridPieces, SurfaceError, SurfaceSide, max_min,
+};
+use hiddenline::stages::surface::{Grid, LatticeLines, LinedMesh};
 
 use super::brute;
 
@@ -192,7 +194,7 @@ fn valleys_of_a_triangle_wave_are_hidden_where_the_closed_form_says() {
 #[test]
 fn sides_of_a_paraboloid_change_at_its_closed_form_contour() {
     let n = 201;
-    let lines = hiddenline::surface::evenly(-2.0, 2.0, n);
+    let lines = hiddenline::stages::surface::evenly(-2.0, 2.0, n);
     let heights = lines.iter().flat_map(|y| lines.iter().map(move |x| x * x + y * y)).collect();
     let grid = Grid::new(lines.clone(), lines, heights).expect("a grid");
     let eye = dvec3(-3.0, -1.0, 6.0);

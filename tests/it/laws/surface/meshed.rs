@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::ViewedScene;
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::surface::{CellOrder, max_min};
-use hiddenline::strokes::StrokeKind;
-use hiddenline::surface::{
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::ViewedScene;
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::surface::{CellOrder, max_min};
+use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::surface::{
     Grid, LatticeLines, LinedMesh, LinedScene, close_seams, delaunay, evenly,
 };
 
@@ -35,7 +35,7 @@ fn solved(surface: &LinedScene, camera: &Camera) -> Visible {
     let view = ViewedScene::with_edges(&surface.scene, camera, surface.lines.clone());
     let (visibility, _, _) = solve(&view, Engine::Roberts, &Settings::default());
     let position = |v: u32| surface.scene.mesh().positions()[v as usize];
-    view.drawn()
+    view.selected()
         .iter()
         .enumerate()
         .map(|(k, drawn)| {

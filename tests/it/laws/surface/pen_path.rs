@@ -1,10 +1,10 @@
 //! What the pen travels between strokes.
 
 use glam::{DVec3, dvec3};
-use hiddenline::chain::grid_lines::{Lines, strokes};
-use hiddenline::engines::surface::{CellOrder, max_min};
-use hiddenline::surface::Grid;
-use hiddenline::surface::formula::{Formula, Variables};
+use hiddenline::stages::chain::grid_lines::{Lines, strokes};
+use hiddenline::stages::engines::surface::{CellOrder, max_min};
+use hiddenline::stages::surface::Grid;
+use hiddenline::stages::surface::formula::{Formula, Variables};
 
 use super::max_min::{PERSPECTIVE, camera};
 

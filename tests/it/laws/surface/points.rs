@@ -1,7 +1,7 @@
 //! Scattered points: what is read, left out and merged.
 
 use glam::{DVec3, dvec3};
-use hiddenline::surface::{Duplicates, PointsError, ScatteredPoints};
+use hiddenline::stages::surface::{Duplicates, PointsError, ScatteredPoints};
 
 fn read(text: &str) -> ScatteredPoints {
     ScatteredPoints::read(text, None).expect("points")

@@ -2,13 +2,13 @@
 
 use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, rough};
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::ViewedScene;
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::surface::{CellOrder, max_min, tin};
-use hiddenline::engines::visibility::Visibility;
-use hiddenline::surface::formula::{Formula, Variables};
-use hiddenline::surface::{LatticeLines, LinedMesh, LinedScene, TrimmedGrid, delaunay};
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::ViewedScene;
+use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::surface::{CellOrder, max_min, tin};
+use hiddenline::stages::engines::visibility::Visibility;
+use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{LatticeLines, LinedMesh, LinedScene, TrimmedGrid, delaunay};
 
 const ALL: LatticeLines =
     LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: true };
@@ -52,7 +52,7 @@ fn check(surface: &LinedScene, camera: &Camera, name: &str) -> bool {
     let expected = visible(&expected);
     for (how, found) in [("one strip", by_horizons), ("strips", in_strips)] {
         for (k, (found, expected)) in visible(&found).iter().zip(&expected).enumerate() {
-            let ends = surface.scene.line(view.drawn()[k].edge);
+            let ends = surface.scene.line(view.selected()[k].edge);
             let ends = ends.map(|v| surface.scene.mesh().positions()[v as usize]);
             assert!(
                 difference(found, expected) < 1e-9,

@@ -1,0 +1,137 @@
+//! A view of a scene, to be put on paper.
+
+use rayon::prelude::*;
+
+use super::{Error, Sheet};
+use crate::camera::Camera;
+use crate::camera::framing::View;
+use crate::draw::{DrawOptions, draw};
+use crate::model::scene::Scene;
+use crate::page::{Page, PageOptions, PenRule, PlotOptions};
+use crate::shading::fill::{DEFAULT_SEAM_MM, FillOptions, fill};
+use crate::strokes::Strokes;
+
+/// What to draw: a scene, a view of it, and which lines.
+///
+/// Nothing is computed before the paper is known, since what is too short to draw, for example, is
+/// a matter of millimeters. [`on`](Self::on) puts the drawing on paper;
+/// [`strokes`](Self::strokes) gives its polylines.
+#[derive(Debug, Clone)]
+#[must_use = "a drawing does nothing until it is put on paper"]
+pub struct Drawing<'a> {
+    scene: &'a Scene,
+    view: View,
+    lines: DrawOptions,
+    plot: PlotOptions,
+    fill: Option<FillOptions>,
+}
+
+impl Scene {
+    /// Draws the scene as `view` shows it.
+    ///
+    /// ```
+    /// use hiddenline::{DrawOptions, Paper, Scene, View};
+    ///
+    /// let scene = Scene::open("examples/models/benchy_wheel.stl")?;
+    /// for azimuth in [0.0, 120.0, 240.0] {
+    ///     let view = View::from_angles(azimuth, 20.0);
+    ///     let sheet = scene.draw(&view, &DrawOptions::default()).on(Paper::A5)?;
+    ///     assert!(!sheet.is_empty());
+    /// }
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn draw(&self, view: &View, lines: &DrawOptions) -> Drawing<'_> {
+        Drawing {
+            scene: self,
+            view: *view,
+            lines: *lines,
+            plot: PlotOptions::default(),
+            fill: None,
+        }
+    }
+
+    /// Draws the scene as each of `views` shows it, all on sheets of the same size, in parallel.
+    /// The sheets come in the order of the views.
+    ///
+    /// # Errors
+    /// A view makes no camera, or a drawing cannot be placed on the page.
+    pub fn draw_views(
+        &self,
+        views: &[View],
+        lines: &DrawOptions,
+        page: impl Into<PageOptions>,
+    ) -> Result<Vec<Sheet>, Error> {
+        let page = page.into();
+        views.par_iter().map(|view| self.draw(view, lines).on(page)).collect()
+    }
+}
+
+impl Drawing<'_> {
+    /// What the drawing is called; written into files.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.plot.title = title.into();
+        self
+    }
+
+    /// Width of the pen's line in millimeters; 0.3 unless set.
+    pub fn pen_width_mm(mut self, width_mm: f64) -> Self {
+        self.plot.pen_width_mm = width_mm;
+        self
+    }
+
+    /// Which pens draw what; by default one draws the visible lines and one the hidden ones.
+    pub fn pens(mut self, pens: impl IntoIterator<Item = PenRule>) -> Self {
+        self.plot.pens = pens.into_iter().collect();
+        self
+    }
+
+    /// Fills the visible faces with color, below the lines.
+    pub fn filled(mut self, options: FillOptions) -> Self {
+        self.fill = Some(options);
+        self
+    }
+
+    /// Puts the drawing on a sheet of paper, by default as large as a margin of 10 mm allows.
+    ///
+    /// # Errors
+    /// The view makes no camera, the drawing cannot be placed on the page, or the areas cannot be
+    /// filled as asked.
+    pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
+        let (camera, page) = self.place(page.into())?;
+        let strokes = draw(self.scene, &camera, &self.lines, page.mm_per_image_unit()).drawing;
+        let plot = PlotOptions { hidden: self.lines.hidden, ..self.plot.clone() };
+        let placed = page.plot(&strokes, plot);
+        let Some(options) = &self.fill else { return Ok(Sheet::new(placed)) };
+        let filled = fill(self.scene, &camera, options)?;
+        Ok(Sheet::new(placed.with_fills(&page, &filled, DEFAULT_SEAM_MM)))
+    }
+
+    /// The strokes with their kinds, in image coordinates (y up), and the page, which maps these to
+    /// millimeters: [`Page::page_from_image`].
+    ///
+    /// # Errors
+    /// As for [`on`](Self::on).
+    ///
+    /// ```
+    /// # use hiddenline::{DrawOptions, Paper, Scene, View};
+    /// # let scene = Scene::open("examples/models/spot.obj")?;
+    /// let drawing = scene.draw(&View::front(), &DrawOptions::default());
+    /// let (strokes, page) = drawing.strokes(Paper::A4)?;
+    /// for stroke in strokes.iter() {
+    ///     let mm = stroke.points.iter().map(|&p| page.page_from_image.transform_point2(p));
+    ///     println!("{}: {:?}", stroke.kind.name(), mm.collect::<Vec<_>>());
+    /// }
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn strokes(&self, page: impl Into<PageOptions>) -> Result<(Strokes, Page), Error> {
+        let (camera, page) = self.place(page.into())?;
+        let lines = DrawOptions { apart_by_kind: true, ..self.lines };
+        Ok((draw(self.scene, &camera, &lines, page.mm_per_image_unit()).drawing, page))
+    }
+
+    fn place(&self, options: PageOptions) -> Result<(Camera, Page), Error> {
+        let camera = self.view.camera(self.scene.mesh().bounds().unwrap_or_default())?;
+        let page = Page::place(&self.scene.extent(&camera), &camera, &options)?;
+        Ok((camera, page))
+    }
+}

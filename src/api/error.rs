@@ -1,0 +1,53 @@
+//! What can go wrong between a file and a sheet of paper.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error as ThisError;
+
+use crate::camera::framing::ViewError;
+use crate::model::mesh::MeshError;
+use crate::page::PageError;
+use crate::read::ReadError;
+use crate::shading::fill::FillError;
+use crate::write::WriteError;
+
+/// Why there is no drawing.
+#[derive(Debug, ThisError)]
+#[non_exhaustive]
+pub enum Error {
+    /// A model file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The faces make no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The view makes no camera.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// The drawing cannot be placed on the page.
+    #[error(transparent)]
+    Page(#[from] PageError),
+    /// The faces cannot be filled as asked.
+    #[error(transparent)]
+    Fill(#[from] FillError),
+    /// The name of the output file does not say a format that can be written.
+    #[error("{}: the extension names no format; use one of {}", .0.display(), crate::write::known_extensions())]
+    UnknownFormat(PathBuf),
+    /// The format cannot show this sheet, or its machine is not known.
+    #[error("{}: {error}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: WriteError,
+    },
+    /// The file cannot be written.
+    #[error("cannot write {}: {error}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+}

@@ -1,0 +1,17 @@
+//! The front door: a scene, a view of it, a drawing, a sheet of paper, a file.
+//!
+//! ```text
+//!   Scene ── draw(&view, &lines) ─► Drawing ── on(paper) ─► Sheet ── save(path) ─► file
+//!   Surface ─┘                        │                       │
+//!                                     └─ strokes(paper)       └─ optimized()
+//! ```
+
+mod drawing;
+mod error;
+mod models;
+mod sheet;
+
+pub use self::drawing::Drawing;
+pub use self::error::Error;
+pub use self::models::SceneBuilder;
+pub use self::sheet::Sheet;

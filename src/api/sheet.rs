@@ -1,0 +1,101 @@
+//! A sheet of paper with a drawing on it, and its way into a file.
+
+use std::fs;
+use std::path::Path;
+
+use super::Error;
+use crate::optimize::{Options as OptimizeOptions, optimize};
+use crate::page::PlacedPlot;
+use crate::plot::Plot;
+use crate::write::{Format, Target, WriteError, write};
+
+/// A drawing on paper: pens, their strokes in millimeters, and whether all of it fits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    placed: PlacedPlot,
+}
+
+impl Sheet {
+    pub(super) fn new(placed: PlacedPlot) -> Self {
+        Self { placed }
+    }
+
+    /// The strokes of each pen, in millimeters from the upper left corner, y down.
+    pub fn plot(&self) -> &Plot {
+        &self.placed.plot
+    }
+
+    /// Whether nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        self.placed.plot.layers.iter().all(|l| l.lines.is_empty() && l.fills.is_empty())
+    }
+
+    /// Whether lines were cut off at the margins.
+    pub fn is_cropped(&self) -> bool {
+        self.placed.cropped
+    }
+
+    /// Joins strokes, draws doubled ink once, and orders the strokes of each pen for short pen-up
+    /// travel.
+    #[must_use]
+    pub fn optimized(self) -> Self {
+        self.optimized_with(&OptimizeOptions::for_drawings())
+    }
+
+    /// The same with options.
+    #[must_use]
+    pub fn optimized_with(mut self, options: &OptimizeOptions) -> Self {
+        self.placed.plot = optimize(&self.placed.plot, options).0;
+        self
+    }
+
+    /// Writes a file; the extension says the format: svg, pdf, dxf, png, or hpgl and gcode for the
+    /// default machines. An existing file is replaced only when all is written.
+    ///
+    /// # Errors
+    /// The extension names no format, the format's feature is off, or the file cannot be written.
+    ///
+    /// ```no_run
+    /// # use hiddenline::{DrawOptions, Paper, Scene, View};
+    /// # let scene = Scene::open("examples/models/spot.obj")?;
+    /// let sheet = scene.draw(&View::isometric(), &DrawOptions::default()).on(Paper::A4)?;
+    /// sheet.optimized().save("cow.svg")?;
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let format =
+            Format::from_path(path).ok_or_else(|| Error::UnknownFormat(path.to_owned()))?;
+        let failed = |error| Error::Write { path: path.to_owned(), error };
+        let bytes = self.to_bytes(&Target::usual(format).map_err(failed)?).map_err(failed)?;
+        // Written beside it and renamed, so that a full disk does not cost the old file.
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(format!(".{}.partial", std::process::id()));
+        let beside = path.with_file_name(name);
+        let written = fs::write(&beside, bytes).and_then(|()| fs::rename(&beside, path));
+        written.map_err(|error| {
+            let _ = fs::remove_file(&beside);
+            Error::Io { path: path.to_owned(), error }
+        })
+    }
+
+    /// The sheet as bytes of any format, for any machine.
+    ///
+    /// # Errors
+    /// The plot does not suit the target.
+    ///
+    /// ```
+    /// use hiddenline::{DrawOptions, Format, Paper, Scene, Target, View};
+    ///
+    /// let scene = Scene::open("examples/models/spot.obj")?;
+    /// let sheet = scene.draw(&View::front(), &DrawOptions::default()).on(Paper::A4)?;
+    /// let svg = sheet.to_bytes(&Target::usual(Format::Svg)?)?;
+    /// assert!(svg.starts_with(b"<svg"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn to_bytes(&self, target: &Target) -> Result<Vec<u8>, WriteError> {
+        let mut bytes = Vec::new();
+        write(&self.placed.plot, target, &mut bytes)?;
+        Ok(bytes)
+    }
+}

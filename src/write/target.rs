@@ -1,0 +1,123 @@
+//! What a plot is written as: a format, with what that format needs to know.
+
+use std::io;
+
+use thiserror::Error;
+
+use super::svg::StrokeElement;
+use super::{Format, NoFills, dxf, svg};
+use crate::plot::Plot;
+
+#[cfg(feature = "png")]
+use super::png::{self, Marks, PngError, Resolution};
+#[cfg(feature = "plotters")]
+use super::{gcode, hpgl};
+
+/// A format and its settings.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Target {
+    /// Scalable vector graphics.
+    Svg(StrokeElement),
+    /// Polylines for CAD and CAM programs.
+    Dxf,
+    /// A page for print.
+    #[cfg(feature = "pdf")]
+    Pdf,
+    /// A picture, and what it shows of the pens' travel.
+    #[cfg(feature = "png")]
+    Png(Resolution, Marks),
+    /// HPGL for a plotter.
+    #[cfg(feature = "plotters")]
+    Hpgl(Box<hpgl::Machine>),
+    /// G-code for a machine.
+    #[cfg(feature = "plotters")]
+    Gcode(Box<gcode::Profile>),
+}
+
+/// Why a plot is not written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The output fails.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// The format was left out when the crate was built.
+    #[error("this build cannot write {}; turn on the crate's feature for it", .0.name())]
+    FormatOff(Format),
+    /// Strokes as JSON hold more than a plot does.
+    #[error("JSON holds strokes in image coordinates, which a sheet no longer has")]
+    OnlyStrokes,
+    /// The format has lines only.
+    #[error(transparent)]
+    NoFills(#[from] NoFills),
+    /// The plot does not suit the plotter.
+    #[cfg(feature = "plotters")]
+    #[error(transparent)]
+    Hpgl(#[from] hpgl::Error),
+    /// The profile is damaged.
+    #[cfg(feature = "plotters")]
+    #[error(transparent)]
+    Gcode(#[from] gcode::Error),
+    /// The picture cannot be made.
+    #[cfg(feature = "png")]
+    #[error(transparent)]
+    Png(PngError),
+}
+
+#[cfg(feature = "png")]
+impl From<PngError> for WriteError {
+    fn from(error: PngError) -> Self {
+        match error {
+            PngError::Write(error) => Self::Io(error),
+            error => Self::Png(error),
+        }
+    }
+}
+
+impl Target {
+    /// The usual target of a format: HPGL for an HP 7475A, G-code for GRBL with a pen servo, 300
+    /// pixels per inch.
+    ///
+    /// # Errors
+    /// The format's feature is off, or a plot alone does not do for it (JSON).
+    pub fn usual(format: Format) -> Result<Self, WriteError> {
+        Ok(match format {
+            Format::Svg => Self::Svg(StrokeElement::default()),
+            Format::Dxf => Self::Dxf,
+            #[cfg(feature = "pdf")]
+            Format::Pdf => Self::Pdf,
+            #[cfg(feature = "png")]
+            Format::Png => Self::Png(Resolution::default(), Marks::default()),
+            #[cfg(feature = "plotters")]
+            Format::Hpgl => Self::Hpgl(Box::new(hpgl::Machine::named(hpgl::DEFAULT_MACHINE)?)),
+            #[cfg(feature = "plotters")]
+            Format::Gcode => Self::Gcode(Box::new(gcode::Profile::named(gcode::DEFAULT_PROFILE)?)),
+            Format::Json => return Err(WriteError::OnlyStrokes),
+            #[allow(unreachable_patterns, reason = "reached where features are off")]
+            format => return Err(WriteError::FormatOff(format)),
+        })
+    }
+}
+
+/// Writes `plot` to `out`. O(points), and O(pixels) for a picture.
+///
+/// # Errors
+/// See [`WriteError`]. Nothing has been written to `out` when the plot does not suit the target.
+pub fn write(plot: &Plot, target: &Target, out: &mut dyn io::Write) -> Result<(), WriteError> {
+    match target {
+        Target::Svg(element) => Ok(svg::write(plot, *element, out)?),
+        Target::Dxf => Ok(dxf::write(plot, out)?),
+        #[cfg(feature = "pdf")]
+        Target::Pdf => Ok(super::pdf::write(plot, out)?),
+        #[cfg(feature = "png")]
+        Target::Png(resolution, marks) => Ok(png::write_marked(plot, *resolution, *marks, out)?),
+        #[cfg(feature = "plotters")]
+        Target::Hpgl(machine) => {
+            let profile = hpgl::Profile::on(plot, machine.as_ref().clone(), None)?;
+            Ok(hpgl::write(plot, &profile, out)?)
+        }
+        #[cfg(feature = "plotters")]
+        Target::Gcode(profile) => Ok(gcode::write(plot, profile, out)?),
+    }
+}
