@@ -1,5 +1,4 @@
-//! One axis: its line, its ticks with numbers, and its title, laid out so that no text touches
-//! another.
+//! One axis: its line, its ticks with numbers, and its title, laid out so that no two texts touch.
 
 use glam::{DVec2, DVec3};
 
@@ -8,27 +7,27 @@ use super::ticks::ticks;
 use crate::camera::Camera;
 use crate::strokes::{StrokeKind, Strokes};
 
-/// Length of ticks and space beside text, as a part of the height of numbers.
+/// Length of ticks and gap beside text, as a fraction of the height of numbers.
 const SPACE: f64 = 0.6;
 
-/// The least space between two texts beside each other, and over each other, as parts of the height
-/// of numbers: more than a blank, and room for descenders.
+/// Minimum horizontal and vertical gap between two texts, as fractions of the height of numbers: wider
+/// than a blank, with room for descenders.
 const CLEARANCE: DVec2 = DVec2::new(1.0, 0.5);
 
-/// One axis, from `a` to `b` in space.
+/// One axis, from `a` to `b` in model space.
 pub(super) struct Axis<'a> {
     pub(super) axis: usize,
     pub(super) a: DVec3,
     pub(super) b: DVec3,
     pub(super) factor: f64,
-    /// Of the box, in the image.
+    /// Center of the box in the image.
     pub(super) center: DVec2,
-    /// Of numbers, in the image.
+    /// Height of numbers in the image.
     pub(super) height: f64,
     pub(super) title: &'a str,
 }
 
-/// A line of text in its place.
+/// A line of text at its position.
 pub(super) struct Label {
     line: String,
     height: f64,
@@ -36,18 +35,18 @@ pub(super) struct Label {
     half_size: DVec2,
 }
 
-/// An axis in its place in the image.
+/// An axis laid out in the image.
 pub(super) struct Laid {
     ends: [DVec2; 2],
-    /// Away from the box, of unit length.
+    /// Unit vector pointing away from the box.
     out: DVec2,
-    /// Foot, tip, and what is written there unless there is no room for it.
+    /// Foot, tip and number of each tick; the number is `None` if there is no room for it.
     ticks: Vec<(DVec2, DVec2, Option<Label>)>,
     title: Option<Label>,
 }
 
 impl Label {
-    /// A line whose box stands off `at` in the direction `out`.
+    /// A line of text whose box is `gap` away from `at` in the direction `out`.
     fn beside(line: &str, height: f64, at: DVec2, out: DVec2, gap: f64) -> Self {
         let (_, width) = text(line, height);
         let half_size = DVec2::new(width, height) / 2.0;
@@ -60,7 +59,7 @@ impl Label {
         apart.cmpge(space).any()
     }
 
-    /// The box around its strokes.
+    /// The bounding box of its strokes.
     #[cfg(test)]
     pub(super) fn drawn_box(&self) -> (DVec2, DVec2) {
         let mut drawing = Strokes::default();
@@ -68,7 +67,7 @@ impl Label {
         drawing.bounds().unwrap_or((self.center, self.center))
     }
 
-    /// Writes it with the middle of its capitals at the center.
+    /// Draws the text, with its capitals centered vertically.
     fn draw(&self, drawing: &mut Strokes) {
         let (strokes, _) = text(&self.line, self.height);
         let corner = self.center - self.half_size;
@@ -79,9 +78,9 @@ impl Label {
 }
 
 impl Axis<'_> {
-    /// Places ticks and numbers clear of each other and of those of `others`. There are fewer ticks
-    /// where numbers would touch; a number that would touch another axis' is moved a little along its
-    /// axis or left out.
+    /// Places ticks and numbers so that no number touches another one, on this axis or on `others`. If
+    /// numbers of this axis would touch, it gets fewer ticks. A number that would touch one of another
+    /// axis is shifted a little along its own axis, or left out.
     pub(super) fn lay(&self, camera: &Camera, others: &[Laid]) -> Option<Laid> {
         let ends = [self.a, self.b].map(|p| camera.image(p));
         let along = (ends[1] - ends[0]).normalize_or_zero();
@@ -122,7 +121,7 @@ impl Axis<'_> {
         Some(laid)
     }
 
-    /// Ticks with their numbers.
+    /// Foot, tip and number of each tick.
     fn numbers(&self, camera: &Camera, out: DVec2, coarser: u32) -> Vec<(DVec2, DVec2, Label)> {
         let (from, to) = (self.a[self.axis] / self.factor, self.b[self.axis] / self.factor);
         let at_tick = |(value, label): (f64, String)| {
@@ -136,7 +135,7 @@ impl Axis<'_> {
         ticks(from.min(to), from.max(to), coarser).into_iter().map(at_tick).collect()
     }
 
-    /// The title, beyond the numbers of this axis and clear of all other text.
+    /// The title, outside the numbers of this axis and clear of all other text.
     pub(super) fn place_title(&self, k: usize, all: &[Laid]) -> Option<Label> {
         let laid = all.get(k).filter(|_| !self.title.is_empty())?;
         let space = SPACE * self.height;
@@ -159,11 +158,11 @@ impl Axis<'_> {
     }
 }
 
-/// How often a title is moved on by half the space beside it, at most.
+/// How many times at most a title moves farther out, by half the gap beside it each time.
 const MOST_STEPS: usize = 200;
 
 impl Laid {
-    /// All texts.
+    /// Its numbers and its title.
     pub(super) fn labels(&self) -> impl Iterator<Item = &Label> {
         self.ticks.iter().filter_map(|(.., label)| label.as_ref()).chain(&self.title)
     }
@@ -186,7 +185,7 @@ impl Laid {
     }
 }
 
-/// Writes a line with the middle of its capitals at `at`.
+/// Draws a line of text centered at `at`.
 pub(super) fn write_centered(drawing: &mut Strokes, line: &str, height: f64, at: DVec2) {
     Label::beside(line, height, at, DVec2::ZERO, 0.0).draw(drawing);
 }

@@ -1,34 +1,34 @@
-//! A single-stroke font: letters as the pen draws them, without outlines.
+//! A single-stroke font: each letter is drawn as centerlines, not outlines.
 //!
 //! ```text
-//!   8 ┬ ╷   ╱╲     capitals, digits and letters with a stem
-//!   6 ┼ │  ╱──╲    small letters
+//!   8 ┬ ╷   ╱╲     capitals, digits and ascenders
+//!   6 ┼ │  ╱──╲    lowercase letters
 //!   2 ┴ └─╱    ╲   the baseline
 //!   0              descenders
 //! ```
 //!
-//! Glyphs are drawn on a grid 4 units wide and 8 high. Each is its width and its strokes: points of
-//! two digits, x and y, run together; a blank lifts the pen.
+//! Glyphs are drawn on a grid 4 units wide and 8 units high. A glyph has a width and strokes. Each point
+//! is two digits, x and y; a blank lifts the pen.
 
 use glam::{DVec2, dvec2};
 
 use super::letters::{Accent, combining, split};
 
-/// From the baseline to the top of capitals, in units of the glyphs' grid.
+/// Height of capitals above the baseline, in units of the glyph grid.
 const CAPITAL: f64 = 6.0;
 
-/// Empty units after each glyph.
+/// Space after each glyph, in units of the glyph grid.
 const GAP: f64 = 1.6;
 
 const BASELINE: f64 = 2.0;
 
-/// From the baseline to the top of small letters, in units of the glyphs' grid.
+/// Height of lowercase letters above the baseline, in units of the glyph grid.
 const SMALL: f64 = 4.0;
 
-/// From the top of a letter to the accent above it.
+/// Gap between a letter and the accent above it.
 const ABOVE: f64 = 0.6;
 
-/// Width that letters with an accent have at least.
+/// Minimum width of a letter with an accent.
 const WIDEST_ACCENT: f64 = 2.6;
 
 /// A character, its width and its strokes.
@@ -74,9 +74,9 @@ const GLYPHS: &[Glyph] = &[
     ('π', 4, "0646 1612 3632"), ('θ', 3, "180703122233372818 0535"),
 ];
 
-/// The strokes of a line of text, `height` being that of its capitals, from (0, 0) at the left end
-/// of the baseline to the right and upwards; and its width. Letters with accents are put together;
-/// characters that the font does not have, see [`missing`], become a question mark.
+/// The strokes of a line of text, and its width. `height` is the height of capitals; the origin is at the
+/// left end of the baseline, with x to the right and y up. Accented letters are composed of a letter and
+/// an accent. Characters that are not in the font, see [`missing`], become question marks.
 pub fn text(line: &str, height: f64) -> (Vec<Vec<DVec2>>, f64) {
     let unit = height / CAPITAL;
     let mut strokes = Vec::new();
@@ -92,7 +92,7 @@ pub fn text(line: &str, height: f64) -> (Vec<Vec<DVec2>>, f64) {
         if let Some(accent) = accent {
             room = room.max(WIDEST_ACCENT);
             if matches!(character, 'i' | 'j') && !accent.is_below() {
-                // The mark stands in place of the dot.
+                // The accent replaces the dot.
                 parts.truncate(1);
             }
         }
@@ -114,7 +114,7 @@ pub fn text(line: &str, height: f64) -> (Vec<Vec<DVec2>>, f64) {
     (strokes, (at - GAP).max(0.0) * unit)
 }
 
-/// The characters of a line that the font does not have, each once, in their order.
+/// The characters of a line that are not in the font, each once, in order of appearance.
 pub fn missing(line: &str) -> Vec<char> {
     let mut missing: Vec<char> = Vec::new();
     for (character, _) in letters(line) {
@@ -129,7 +129,7 @@ fn glyph(wanted: char) -> Option<&'static Glyph> {
     GLYPHS.iter().find(|(character, ..)| *character == wanted)
 }
 
-/// The characters without their accents, which are beside them, and in the spelling of the font.
+/// The letters of a line, each with its accent split off and replaced by the variant that the font has.
 fn letters(line: &str) -> impl Iterator<Item = (char, Option<Accent>)> {
     let mut characters = line.chars().peekable();
     std::iter::from_fn(move || {

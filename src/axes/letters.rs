@@ -1,9 +1,9 @@
-//! Accents: marks that are put to plain letters, so that most of the Latin alphabet needs no glyphs
-//! of its own.
+//! Accents: marks added to plain letters, so that most accented Latin letters need no glyphs of their
+//! own.
 //!
 //! ```text
-//!    ╱      ╲╱     o o    ○            the mark stands above the letter, in its middle,
-//!   E      S      u      A      c     or below its baseline
+//!    ╱      ╲╱     o o    ○            the mark is centered above the letter,
+//!   E      S      u      A      c     or below the baseline
 //!                               ¸
 //! ```
 
@@ -24,7 +24,7 @@ pub(super) enum Accent {
 
 use Accent::*;
 
-/// A mark, the letters that have it, and these letters without it.
+/// An accent, the letters that carry it, and the same letters without it.
 const ACCENTED: [(Accent, &str, &str); 10] = [
     (Grave, "ÀÈÌÒÙàèìòù", "AEIOUaeiou"),
     (Acute, "ÁÉÍÓÚÝáéíóúýĆćŃńŚśŹź", "AEIOUYaeiouyCcNnSsZz"),
@@ -38,7 +38,7 @@ const ACCENTED: [(Accent, &str, &str); 10] = [
     (Dot, "ŻżİĖė", "ZzIEe"),
 ];
 
-/// The letter without its mark, and the mark.
+/// Splits an accented letter into the plain letter and its accent.
 pub(super) fn split(letter: char) -> Option<(char, Accent)> {
     ACCENTED.iter().find_map(|(accent, with, without)| {
         let place = with.chars().position(|c| c == letter)?;
@@ -46,7 +46,7 @@ pub(super) fn split(letter: char) -> Option<(char, Accent)> {
     })
 }
 
-/// The mark that follows its letter as a character of its own.
+/// The accent of a combining character, which follows its letter.
 pub(super) fn combining(mark: char) -> Option<Accent> {
     Some(match mark {
         '\u{300}' => Grave,
@@ -64,13 +64,13 @@ pub(super) fn combining(mark: char) -> Option<Accent> {
 }
 
 impl Accent {
-    /// Whether it stands below the baseline, not above the letter.
+    /// Whether it is placed below the baseline instead of above the letter.
     pub(super) fn is_below(self) -> bool {
         self == Cedilla
     }
 
-    /// Its strokes, in units of the glyphs' grid: x from the middle of the letter, y from a little
-    /// above its top or from the baseline.
+    /// Its strokes, in units of the glyph grid: x from the center of the letter, y from the baseline or
+    /// from a little above the letter.
     pub(super) fn strokes(self) -> &'static [&'static [(f64, f64)]] {
         match self {
             Grave => &[&[(-0.7, 1.3), (0.5, 0.0)]],

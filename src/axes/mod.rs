@@ -1,10 +1,10 @@
-//! What stands around the drawing of a surface: axes with ticks, numbers and titles, as strokes.
+//! Axes with ticks, numbers and titles around a surface, as strokes.
 //!
 //! ```text
-//!      ╱▔▔▔╲            Each axis runs along an edge of the surface's box between a face that the
-//!  2 ─┤     ╲           eye is in front of and one that it is not: an edge of the box's outline.
-//!     │      ▏          Nothing in the box hides such an edge, nor what is drawn outside of it, so
-//!  0 ─╲     ╱           no visibility needs to be found, and the lettering covers nothing.
+//!      ╱▔▔▔╲            Each axis runs along an edge of the bounding box between a front face and
+//!  2 ─┤     ╲           a back face, that is, along the outline of the box. Nothing in the box can
+//!     │      ▏          hide such an edge or anything drawn outside it, so axes need no visibility
+//!  0 ─╲     ╱           algorithm, and the lettering never covers the surface.
 //!    ┼ ╲┼┼┼╱
 //! ```
 
@@ -22,15 +22,16 @@ use crate::camera::{Camera, Projection};
 use crate::extent::Extent;
 use crate::strokes::Strokes;
 
-/// Height of numbers, as a part of the longer side of the box's image: 4.6 mm on A4 landscape.
+/// Height of numbers as a fraction of the longer side of the box in the image: 4.6 mm on A4
+/// landscape.
 const TEXT_HEIGHT: f64 = 1.0 / 60.0;
 
-/// What is written.
+/// The titles of the axes and of the drawing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Titles {
-    /// Beside the axes x, y and z; none where empty.
+    /// Titles of the x, y and z axes; an empty one is left out.
     pub axes: [String; 3],
-    /// Above the drawing; none when empty.
+    /// Title above the drawing; left out if empty.
     pub drawing: String,
 }
 
@@ -40,12 +41,12 @@ impl Default for Titles {
     }
 }
 
-/// Axes around `bounds`, the (lowest, highest) corner of what is drawn, and titles above `extent`, what
-/// of the image that takes up.
+/// Draws axes around `bounds`, the lowest and highest corner of the surface in model units, and a title
+/// above `extent`, the part of the image that the surface takes up.
 ///
-/// Numbers are heights divided by `z_factor`: heights as given, for a surface whose heights were
-/// multiplied by it. An axis that has no edge on the outline of the box is left out; so are all
-/// when a corner of the box is not beyond the near plane.
+/// The numbers on the z axis are heights divided by `z_factor`, so a surface whose heights were
+/// multiplied by that factor shows its original heights. An axis without an edge on the outline of the
+/// box is left out. If any corner of the box is in front of the near plane, all axes are left out.
 pub fn axes(
     extent: &Extent,
     bounds: (DVec3, DVec3),
@@ -68,8 +69,8 @@ pub fn axes(
     drawing
 }
 
-/// Axes in their places, the least and greatest coordinates of the box in the image, and the height
-/// of numbers there.
+/// The axes, the lower and upper corner of the box in the image, and the height of numbers in the
+/// image.
 type Layout = (Vec<Laid>, (DVec2, DVec2), f64);
 
 fn lay(bounds: (DVec3, DVec3), z_factor: f64, camera: &Camera, titles: &Titles) -> Option<Layout> {
@@ -103,7 +104,7 @@ fn lay(bounds: (DVec3, DVec3), z_factor: f64, camera: &Camera, titles: &Titles) 
             axes.push(axis);
         }
     }
-    // Numbers first: titles can go farther out.
+    // Numbers first, since titles can move farther out.
     for (k, axis) in axes.iter().enumerate() {
         let title = axis.place_title(k, &laid);
         laid[k].set_title(title);
@@ -122,7 +123,7 @@ impl BoundingBox<'_> {
         DVec3::from_array([0, 1, 2].map(|k| if is_high[k] { self.high[k] } else { self.low[k] }))
     }
 
-    /// Whether the eye is on the outer side of a face.
+    /// Whether the eye is in front of a face.
     fn is_front(&self, axis: usize, is_high: bool) -> bool {
         match (self.camera.projection(), is_high) {
             (Projection::Perspective { .. }, false) => self.camera.eye()[axis] < self.low[axis],
@@ -132,7 +133,7 @@ impl BoundingBox<'_> {
         }
     }
 
-    /// The edge of the outline along an axis that is lowest, or leftmost for z, in the image.
+    /// The edge of the outline along an axis that is lowest in the image, or leftmost for z.
     fn axis_edge(&self, axis: usize) -> Option<[DVec3; 2]> {
         if self.low[axis] >= self.high[axis] {
             return None;
@@ -164,7 +165,7 @@ mod tests {
 
     use super::*;
 
-    /// The axes of a box as an eye sees them that is `distance` away, if it sees any.
+    /// The axes of a box around the origin, seen from `eye`.
     fn laid(size: DVec3, eye: DVec3, titles: &Titles) -> Vec<Laid> {
         let camera = Camera::new(
             eye,

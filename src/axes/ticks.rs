@@ -1,10 +1,10 @@
 //! Round numbers along an axis.
 
-/// About how many ticks an axis has.
+/// The approximate number of ticks on an axis.
 const TICKS: f64 = 5.0;
 
-/// Round numbers from `low` to `high`, about [`TICKS`], with what is written beside them; fewer with
-/// a step that is `coarser` places farther in 1, 2, 5, 10, 20 … times a power of ten.
+/// About [`TICKS`] round numbers from `low` to `high`, each with its label. The step between them is 1, 2
+/// or 5 times a power of ten; `coarser` moves it that many places up in the sequence 1, 2, 5, 10, 20 …
 pub(super) fn ticks(low: f64, high: f64, coarser: u32) -> Vec<(f64, String)> {
     let range = high - low;
     if !(range > 0.0 && range.is_finite()) {
@@ -19,7 +19,7 @@ pub(super) fn ticks(low: f64, high: f64, coarser: u32) -> Vec<(f64, String)> {
     let step = digits[place % digits.len()] * libm::pow(10.0, exponent);
     let first = libm::ceil(low / step);
     let count = libm::floor(high / step) - first;
-    // Beyond the digits of a number, ticks would fall together.
+    // Too large for the step: adjacent ticks would round to the same number.
     if !(step > 0.0 && (0.0..100.0).contains(&count) && first.abs() < 1e12) {
         return Vec::new();
     }
@@ -28,7 +28,7 @@ pub(super) fn ticks(low: f64, high: f64, coarser: u32) -> Vec<(f64, String)> {
     (0..=count as u32)
         .map(|k| {
             let number = first + f64::from(k);
-            // Dividing by a whole number rounds once: 0.3, not 0.30000000000000004.
+            // Division by a whole number rounds only once: 0.3, not 0.30000000000000004.
             let whole = libm::pow(10.0, decimals);
             let value = if decimals > 0.0 && whole.is_finite() {
                 number * libm::round(step * whole) / whole

@@ -1,92 +1,92 @@
-//! Where the camera stands when its place is given by a name, by angles, or not at all.
+//! Chooses a camera from a named view, from angles, or from the scene alone.
 //!
 //! ```text
-//!            z                          azimuth: turns the observer around the target, seen from
-//!            │      ● eye               above counter-clockwise, 0 in front of it (looking along
-//!            │    ╱ ╎ elevation         +y), 90 to the right of it (looking along −x)
+//!            z                          azimuth: the eye moves around the target, counterclockwise
+//!            │      ● eye               seen from above: 0 in front of it (looking along +y), 90 to
+//!            │    ╱ ╎ elevation         its right (looking along −x)
 //!     target ●──────╎──── x
 //!           ╱ ╲     ╎                   eye = target + D (sin az · cos el, −cos az · cos el, sin el)
 //!          y   ╲ ╌╌╌╎ azimuth, from −y
 //! ```
 //!
-//! Symmetric views are symmetric to the last bit: sines and cosines of multiples of 30° and 45° are
-//! the right numbers, and what is chosen here is chosen on a coarse binary grid, so that `target −
-//! eye` is exactly the intended direction. (A target given by hand with more bits than the grid
-//! has may round that difference.)
+//! Symmetric views are symmetric to the last bit. Sines and cosines of multiples of 30° and 45° are
+//! correctly rounded, and automatic targets and distances lie on a coarse binary grid, so `target − eye`
+//! is exactly the intended direction. (A target given by the user may have more bits than the grid, and
+//! then the difference may be rounded.)
 
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
 
-/// Azimuth in degrees, unless set otherwise.
+/// Default azimuth in degrees.
 pub const DEFAULT_AZIMUTH_DEG: f64 = 30.0;
 
-/// Elevation in degrees, unless set otherwise.
+/// Default elevation in degrees.
 pub const DEFAULT_ELEVATION_DEG: f64 = 25.0;
 
-/// An automatic target lies on multiples of the scene's size times two to this power.
+/// Automatic targets are multiples of the scene's size times two to this power.
 const TARGET_GRID_EXPONENT: i32 = -20;
 
-/// An automatic distance has this many significant bits.
+/// Number of significant bits of an automatic distance.
 const DISTANCE_BITS: i32 = 6;
 
-/// Eye minus target lies on multiples of its size times two to this power: three bits fewer than
-/// an `f64` has, so that adding it to the target does not round.
+/// Eye minus target is a multiple of its size times two to this power. That is three bits fewer than an
+/// `f64` has, so adding it to the target does not round.
 const OFFSET_GRID_EXPONENT: i32 = -49;
 
-/// A view with a name.
+/// A named view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NamedView {
-    /// Along +y.
+    /// Looking along +y.
     Front,
-    /// Along −x.
+    /// Looking along −x.
     Right,
-    /// Along −y.
+    /// Looking along −y.
     Back,
-    /// Along +x.
+    /// Looking along +x.
     Left,
-    /// Downwards, with +y up on the page.
+    /// Looking down, with +y up on the page.
     Top,
-    /// Upwards, with −y up on the page.
+    /// Looking up, with −y up on the page.
     Bottom,
-    /// From the front right above; x, y and z equally foreshortened.
+    /// From the upper front right; x, y and z are equally foreshortened.
     Isometric,
-    /// Azimuth 20.705°, elevation 19.471°: x and z equally foreshortened, y half as long.
+    /// Azimuth 20.705°, elevation 19.471°; x and z are equally foreshortened, and y appears half as long.
     Dimetric,
-    /// Azimuth 30°, elevation 25°: every axis foreshortened differently.
+    /// Azimuth 30°, elevation 25°; each axis is foreshortened differently.
     Trimetric,
 }
 
-/// From where the target is seen.
+/// Where the eye is relative to the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Standpoint {
-    /// From a point.
+    /// At a point in model coordinates.
     Eye(DVec3),
-    /// From a direction, in degrees, at a distance or as far as shows the whole scene.
+    /// In a direction given by two angles.
     Angles {
-        /// Around the vertical; 0 is in front.
+        /// Angle around the z axis in degrees; 0 is in front.
         azimuth_deg: f64,
-        /// Above the horizontal.
+        /// Angle above the horizontal plane in degrees.
         elevation_deg: f64,
-        /// Model units; `None` for automatic.
+        /// Distance in model units; `None` fits the whole scene into the field of view.
         distance: Option<f64>,
     },
-    /// From where a named view is seen, at a distance or as far as shows the whole scene.
+    /// In the direction of a named view.
     Named {
         /// Which view.
         view: NamedView,
-        /// Model units; `None` for automatic.
+        /// Distance in model units; `None` fits the whole scene into the field of view.
         distance: Option<f64>,
     },
 }
 
-/// Perspective or not, without numbers.
+/// Perspective or orthographic projection, without parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProjectionKind {
-    /// Through the eye.
+    /// Lines of sight meet in the eye.
     Perspective,
-    /// Parallel.
+    /// Lines of sight are parallel.
     Orthographic,
 }
 
@@ -103,20 +103,20 @@ impl ProjectionKind {
     }
 }
 
-/// A camera as asked for; what is `None` is chosen to suit the scene.
+/// A request for a camera. Fields that are `None` are chosen to suit the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// From where.
+    /// Where the eye is.
     pub standpoint: Standpoint,
-    /// At what: unless given, the middle of the scene's bounding box.
+    /// The point to look at; by default the center of the scene's bounding box.
     pub target: Option<DVec3>,
-    /// What is up on the page: unless given, +z, or +y when looking along z.
+    /// The direction that points up on the page; by default +z, or +y when looking along z.
     pub up: Option<DVec3>,
-    /// Unless given, orthographic for named views and perspective otherwise.
+    /// By default, orthographic for named views and perspective otherwise.
     pub projection: Option<ProjectionKind>,
     /// Vertical field of view in degrees.
     pub fov_deg: f64,
-    /// Near plane, see [`Projection::Perspective`].
+    /// The near plane, see [`Projection::Perspective`].
     pub near: f64,
 }
 
@@ -137,95 +137,95 @@ impl Default for View {
     }
 }
 
-/// Why a framing gives no camera.
+/// Why no camera can be chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ViewError {
-    /// The distance is not a positive number.
+    /// The distance is not positive and finite.
     #[error("the distance must be above 0, not {0}")]
     Distance(f64),
     /// An angle is not finite.
     #[error("azimuth and elevation must be finite")]
     Angle,
-    /// The scene is too large to be seen whole from a point with finite coordinates.
+    /// The scene is so large that no eye with finite coordinates sees all of it.
     #[error(
-        "coordinates of {0:e} are too large to find a camera that shows the whole scene; scale it down"
+        "coordinates of {0:e} are too large for any camera to show the whole scene; scale the model down"
     )]
     TooLarge(f64),
-    /// The numbers make no camera.
+    /// The parameters do not make a valid camera.
     #[error(transparent)]
     Camera(#[from] CameraError),
 }
 
 impl View {
-    /// A view with a name, orthographic unless changed.
+    /// A named view, orthographic by default.
     pub fn named(view: NamedView) -> Self {
         let standpoint = Standpoint::Named { view, distance: None };
         Self { standpoint, ..Self::default() }
     }
 
-    /// Along +y.
+    /// Looking along +y.
     pub fn front() -> Self {
         Self::named(NamedView::Front)
     }
 
-    /// Along −x.
+    /// Looking along −x.
     pub fn right() -> Self {
         Self::named(NamedView::Right)
     }
 
-    /// Downwards, with +y up on the page.
+    /// Looking down, with +y up on the page.
     pub fn top() -> Self {
         Self::named(NamedView::Top)
     }
 
-    /// From the front right above; x, y and z equally foreshortened.
+    /// From the upper front right; x, y and z are equally foreshortened.
     pub fn isometric() -> Self {
         Self::named(NamedView::Isometric)
     }
 
     /// In perspective, from an azimuth (0 is in front, 90 to the right) and an elevation above the
-    /// horizontal, both in degrees, as far away as shows the whole scene.
+    /// horizontal plane, both in degrees. The distance fits the whole scene into the field of view.
     pub fn from_angles(azimuth_deg: f64, elevation_deg: f64) -> Self {
         let standpoint = Standpoint::Angles { azimuth_deg, elevation_deg, distance: None };
         Self { standpoint, ..Self::default() }
     }
 
-    /// In perspective, from a point, towards the middle of the scene.
+    /// In perspective, from a point toward the center of the scene.
     pub fn from_eye(eye: DVec3) -> Self {
         Self { standpoint: Standpoint::Eye(eye), ..Self::default() }
     }
 
-    /// Looks at `target` instead of the middle of the scene.
+    /// Looks at `target` instead of the center of the scene.
     #[must_use]
     pub fn target(self, target: DVec3) -> Self {
         Self { target: Some(target), ..self }
     }
 
-    /// What is up on the page.
+    /// Sets the direction that points up on the page.
     #[must_use]
     pub fn up(self, up: DVec3) -> Self {
         Self { up: Some(up), ..self }
     }
 
-    /// In perspective.
+    /// Uses perspective projection.
     #[must_use]
     pub fn perspective(self) -> Self {
         Self { projection: Some(ProjectionKind::Perspective), ..self }
     }
 
-    /// In parallel projection.
+    /// Uses orthographic projection.
     #[must_use]
     pub fn orthographic(self) -> Self {
         Self { projection: Some(ProjectionKind::Orthographic), ..self }
     }
 
-    /// Vertical field of view in degrees: a wide one stands near.
+    /// Sets the vertical field of view in degrees. A wider one moves an automatic eye closer.
     #[must_use]
     pub fn fov_deg(self, fov_deg: f64) -> Self {
         Self { fov_deg, ..self }
     }
 
-    /// At a distance from the target, in model units, where the view has a direction only.
+    /// Sets the distance from the target in model units. A view from a given point ignores it.
     #[must_use]
     pub fn distance(mut self, model_units: f64) -> Self {
         match &mut self.standpoint {
@@ -237,7 +237,7 @@ impl View {
         self
     }
 
-    /// The camera for a scene within `bounds`, its (lowest, highest) corner.
+    /// Chooses the camera for a scene with the given `bounds`, its lowest and highest corner.
     ///
     /// # Errors
     /// See [`ViewError`].
@@ -299,7 +299,7 @@ impl View {
         Ok(offset)
     }
 
-    /// How far away the sphere around the bounding box fills the field of view.
+    /// The distance from which the sphere around the bounding box fills the field of view.
     fn distance_that_shows(
         &self,
         (low, high): (DVec3, DVec3),
@@ -348,7 +348,7 @@ impl NamedView {
         }
     }
 
-    /// Direction from the target to the eye, of length one up to rounding.
+    /// Direction from the target to the eye, of unit length up to rounding.
     fn towards_eye(self) -> DVec3 {
         match self {
             Self::Front => direction(0.0, 0.0),
@@ -364,17 +364,17 @@ impl NamedView {
     }
 }
 
-/// The direction from target to eye for two angles in degrees.
+/// The direction from the target to the eye for two angles in degrees.
 fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sin_azimuth, cos_azimuth) = sin_cos_deg(azimuth_deg);
     let (sin_elevation, cos_elevation) = sin_cos_deg(elevation_deg);
     DVec3::new(sin_azimuth * cos_elevation, -cos_azimuth * cos_elevation, sin_elevation)
 }
 
-/// Sine and cosine of an angle in degrees, right for all multiples of 30° and 45°.
+/// Sine and cosine of an angle in degrees, correctly rounded for all multiples of 30° and 45°.
 ///
-/// The angle is folded into 0°–45° first, which is exact, so that every identity between the
-/// quadrants holds to the last bit: `sin(180° − a) = sin a`, `cos a = sin(90° − a)` and so on.
+/// The angle is first reduced to 0°–45°, which is exact, so the identities between quadrants hold to the
+/// last bit: `sin(180° − a) = sin a`, `cos a = sin(90° − a)` and so on.
 pub fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     let turn = angle_deg.abs() % 360.0;
     let (half, below) = if turn > 180.0 { (360.0 - turn, true) } else { (turn, false) };
@@ -391,24 +391,24 @@ pub fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     let (sin, cos) = if swapped { (cos, sin) } else { (sin, cos) };
     let sin = if below != (angle_deg < 0.0) { -sin } else { sin };
     let cos = if behind { -cos } else { cos };
-    // Adding zero turns −0 into 0.
+    // Adding 0 turns −0 into 0.
     (sin + 0.0, cos + 0.0)
 }
 
-/// The middle of a box, on a grid of about a millionth of its size.
+/// The center of a box, rounded to a grid of about a millionth of its size.
 fn middle((low, high): (DVec3, DVec3)) -> DVec3 {
     let middle = low / 2.0 + high / 2.0;
     on_grid(middle, power_of_two_at((high - low).max_element()), TARGET_GRID_EXPONENT)
 }
 
-/// `v` rounded to multiples of `size · 2^exponent`, `size` being a power of two.
+/// Rounds `v` to multiples of `size · 2^exponent`, where `size` is a power of two.
 fn on_grid(v: DVec3, size: f64, exponent: i32) -> DVec3 {
     let step = size * libm::exp2(f64::from(exponent));
     let rounded = (v / step).round() * step;
     if rounded.is_finite() { rounded + DVec3::ZERO } else { v }
 }
 
-/// The largest power of two that is not above `x`; 0 for 0.
+/// The largest power of two that is at most `x`; 0 if there is none.
 fn power_of_two_at(x: f64) -> f64 {
     if x > 0.0 && x.is_finite() { libm::ldexp(1.0, libm::ilogb(x)) } else { 0.0 }
 }

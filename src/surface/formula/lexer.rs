@@ -1,15 +1,15 @@
-//! Text to tokens, each with the column it begins at.
+//! Splits text into tokens, each with the column where it starts.
 
 use super::{FormulaError, Problem};
 
-/// The words of the language.
+/// A token of the formula language.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Token {
     Number(f64),
     Name(String),
-    /// An operator or bracket, in its main spelling.
+    /// An operator or parenthesis, in its canonical spelling.
     Symbol(&'static str),
-    /// An exponent in raised digits, as in `x²`.
+    /// An exponent in superscript digits, as in `x²`.
     Raised(f64),
     End,
 }
@@ -22,7 +22,7 @@ pub(super) struct Placed {
 }
 
 impl Token {
-    /// How an error names it.
+    /// The token as an error message names it.
     pub(super) fn describe(&self) -> String {
         match self {
             Self::Number(value) => format!("the number {value}"),
@@ -77,7 +77,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, FormulaError> {
         } else if first.is_ascii_digit() || (first == '.' && starts_fraction(rest)) {
             let length = number_length(rest);
             let word = &rest[..length];
-            // A value too large for a number is an error here, not an infinite constant.
+            // A number that overflows is an error, not an infinite constant.
             let value = fast_float2::parse::<f64, _>(word).ok().filter(|value| value.is_finite());
             let value = value.ok_or_else(|| FormulaError {
                 column,
@@ -121,10 +121,10 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, FormulaError> {
     Ok(tokens)
 }
 
-/// Digits as they are written in exponents, from 0.
+/// Superscript digits from 0 to 9.
 const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
-/// The exponent in raised digits that `text` begins with, and its bytes.
+/// The superscript exponent at the start of `text`, with its length in bytes.
 fn raised(text: &str) -> Option<(usize, f64)> {
     let (digits, sign) = text.strip_prefix('⁻').map_or((text, 1.0), |digits| (digits, -1.0));
     let digit = |c: char| RAISED.iter().position(|raised| *raised == c);
@@ -138,7 +138,7 @@ fn starts_fraction(text: &str) -> bool {
     text.as_bytes().get(1).is_some_and(u8::is_ascii_digit)
 }
 
-/// Bytes of the number that `text` begins with. An `e` belongs to it only when digits follow.
+/// Length in bytes of the number at the start of `text`. An `e` is part of it only when digits follow.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut at: usize| {
@@ -158,7 +158,7 @@ fn number_length(text: &str) -> usize {
             end = exponent_end;
         }
     }
-    // `1.2.3` is one wrong number, not two.
+    // `1.2.3` is one malformed number, not two numbers.
     while matches!(bytes.get(end), Some(b'.' | b'0'..=b'9')) {
         end += 1;
     }

@@ -1,22 +1,23 @@
-//! Formulas: text such as `sin(x) * exp(-y^2)` parsed once and evaluated many times.
+//! Formulas: text such as `sin(x) * exp(-y^2)`, parsed once and evaluated many times.
 //!
 //! ```text
 //!   text ─► tokens ─► operator precedence ─► postfix tape ─► values, a block of samples at a time
 //! ```
 //!
-//! Written here because no crate tried was right about `-x^2` (minus the square), `2^3^2` (512),
-//! `1e3`, the column of an error and hostile nesting at once: exmex, fasteval2, meval, evalexpr
-//! and fidget each fail one. Elementary functions come from `libm`, so that the same formula gives
-//! the same bits everywhere.
+//! We wrote our own because no crate we tried handles `-x^2` (minus the square), `2^3^2` (512), `1e3`,
+//! error columns and hostile nesting all at once: exmex, fasteval2, meval, evalexpr and fidget each
+//! fail at least one. Elementary functions come from `libm`, so a formula gives the same bits on every
+//! machine.
 //!
 //! # Language
 //!
-//! Loosest first: `c ? a : b`; `||` or `or`; `&&` or `and`; `< <= > >= == !=`; `+ -`; `* / %`;
-//! unary `- + !` or `not`; `^` or `**` (binds to the right, `-x^2` is `-(x^2)`), or raised digits as
-//! in `x²`. True is 1, false is
-//! 0, and anything but 0 is true; what is not a number is false. `%` and `mod` take the sign of the
-//! divisor. Both branches of a condition may be evaluated; only the chosen one counts. Names are
-//! listed in [`FUNCTIONS`] and [`CONSTANTS`].
+//! Operators from lowest to highest precedence: `c ? a : b`; `||` or `or`; `&&` or `and`;
+//! `< <= > >= == !=`; `+ -`; `* / %`; unary `- + !` or `not`; `^` or `**` (right-associative; `-x^2` is
+//! `-(x^2)`), or superscript digits as in `x²`.
+//!
+//! True is 1 and false is 0. In a condition, 0 and NaN are false and every other number is true. The
+//! result of `%` and `mod` has the sign of the divisor. Both branches of a condition may be evaluated,
+//! but only the selected value is used. For names see [`FUNCTIONS`] and [`CONSTANTS`].
 
 mod lexer;
 mod parser;
@@ -27,17 +28,17 @@ pub use tape::{CONSTANTS, FUNCTIONS};
 use tape::Tape;
 use thiserror::Error;
 
-/// Longest formula that is read, in bytes.
+/// Maximum length of a formula in bytes.
 pub const MAX_LENGTH: usize = 20_000;
 
-/// Deepest nesting of parentheses, functions, signs and powers that is read.
+/// Maximum nesting depth of parentheses, functions, signs and powers.
 pub const MAX_DEPTH: usize = 200;
 
-/// Which names stand for the two numbers that a formula is evaluated at.
+/// The names of the two variables of a formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variables {
-    /// `x` and `y`; also `r`, the distance from the origin, and `theta`, the angle from the x axis
-    /// in −π..π.
+    /// `x` and `y`; also `r`, the distance from the origin, and `theta`, the angle from the x axis in
+    /// radians, from −π to π.
     Plane,
     /// `u` and `v`, the parameters of a surface in space.
     Parameters,
@@ -49,20 +50,20 @@ pub struct Formula {
     tape: Tape,
 }
 
-/// What is wrong with a formula, and where: columns count characters from 1.
+/// A syntax error in a formula.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("column {column}: {problem}")]
 pub struct FormulaError {
-    /// The character at which reading stopped, counted from 1.
+    /// The character where parsing stopped, counted from 1.
     pub column: usize,
-    /// What was found there.
+    /// What is wrong there.
     pub problem: Problem,
 }
 
 /// The kinds of [`FormulaError`].
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Problem {
-    /// Nothing but blanks.
+    /// The text is blank.
     #[error("the formula is empty")]
     Empty,
     /// More than [`MAX_LENGTH`] bytes.
@@ -71,18 +72,18 @@ pub enum Problem {
     /// More than [`MAX_DEPTH`] levels.
     #[error("the formula is nested more than {MAX_DEPTH} levels deep")]
     TooDeep,
-    /// A character that no formula has.
-    #[error("`{0}` has no meaning in a formula")]
+    /// A character that is not part of the language.
+    #[error("`{0}` is not allowed in a formula")]
     Character(char),
-    /// Digits that make no number.
-    #[error("`{0}` is not a number")]
+    /// A malformed or overflowing number.
+    #[error("`{0}` is not a valid number")]
     Number(String),
-    /// Neither variable, constant nor function.
+    /// A name that is not a variable, constant or function.
     #[error("unknown name `{name}`{}", hint(.near))]
     UnknownName {
-        /// As written.
+        /// The name as written.
         name: String,
-        /// The known name that is spelled most like it, or the product that it looks like.
+        /// The known name with the closest spelling, or the product it looks like.
         near: Option<String>,
     },
     /// A value was expected.
@@ -91,41 +92,41 @@ pub enum Problem {
     /// An operator or the end was expected.
     #[error("expected an operator but found {0}")]
     ExpectedOperator(String),
-    /// Two values beside each other, as in `2x`.
-    #[error("expected an operator but found {found}; a product is written `{left}*{right}`")]
+    /// Two adjacent values, as in `2x`.
+    #[error("expected an operator but found {found}; write a product as `{left}*{right}`")]
     MissingTimes {
-        /// The second one, in words.
+        /// Description of the second value.
         found: String,
-        /// The first one.
+        /// The first value.
         left: String,
-        /// The second one.
+        /// The second value.
         right: String,
     },
-    /// `=`, which assigns or compares elsewhere.
-    #[error("`=` has no meaning in a formula: for a condition write `==`, `<=` or `>=`")]
+    /// A single `=`.
+    #[error("`=` is not an operator; write a condition with `==`, `<=` or `>=`")]
     SingleEquals,
-    /// `z = …`.
-    #[error("a formula is only the right side: leave out `{0} =`")]
+    /// An equation such as `z = …`.
+    #[error("a formula is only the right-hand side; leave out `{0} =`")]
     Assignment(String),
-    /// A closing parenthesis or something else is missing.
+    /// A required token is missing.
     #[error("expected {expected} but found {found}")]
     Expected {
-        /// What should stand here.
+        /// The token expected here.
         expected: &'static str,
-        /// What stands here.
+        /// The token found instead.
         found: String,
     },
-    /// A function without its parentheses.
+    /// A function name without parentheses.
     #[error("`{0}` is a function: write `{0}(…)`")]
     FunctionNeedsArguments(&'static str),
-    /// A wrong number of arguments.
+    /// The wrong number of arguments.
     #[error("`{name}` takes {takes}, not {given}")]
     ArgumentCount {
         /// The function.
         name: &'static str,
-        /// How many it takes, in words.
+        /// How many arguments it takes, in words.
         takes: &'static str,
-        /// How many were written.
+        /// How many arguments were given.
         given: usize,
     },
     /// `a < b < c`.
@@ -138,10 +139,10 @@ fn hint(near: &Option<String>) -> String {
 }
 
 impl Formula {
-    /// Reads a formula. O(length).
+    /// Parses a formula. O(length).
     ///
     /// # Errors
-    /// The first place at which the text is no formula.
+    /// The first syntax error in the text.
     ///
     /// ```
     /// use hiddenline::stages::surface::formula::{Formula, Variables};
@@ -159,16 +160,16 @@ impl Formula {
         Ok(Self { tape: parser::parse(&tokens, variables)? })
     }
 
-    /// The value at one pair of numbers; not a number where the formula has none.
+    /// The value at one pair of variables; NaN where the formula is undefined.
     pub fn value(&self, a: f64, b: f64) -> f64 {
         let mut out = [0.0];
         self.values(&[a], &[b], &mut out);
         out[0]
     }
 
-    /// The values at many pairs; as many as the shortest of the three slices has.
+    /// The values at many pairs, as many as the shortest of the three slices holds.
     ///
-    /// Costs one dispatch for each operation and block of samples, so long slices are cheap.
+    /// Each operation is dispatched once per block of samples, so prefer long slices.
     pub fn values(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
         self.tape.run(a, b, out);
     }

@@ -1,4 +1,4 @@
-//! Tokens to a postfix tape, by operator precedence (Pratt 1973).
+//! Turns tokens into a postfix tape by operator precedence (Pratt 1973).
 
 use super::lexer::{Placed, Token};
 use super::tape::{CONSTANTS, FUNCTIONS, Op, Takes, Tape, function};
@@ -16,7 +16,8 @@ pub(super) fn parse(tokens: &[Placed], variables: Variables) -> Result<Tape, For
     }
 }
 
-/// What stands before a single `=`, if that cannot be meant as a condition: `z`, `f(x, y)`.
+/// The left-hand side of an equation such as `z = …` or `f(x, y) = …`; `None` if the `=` may be meant as
+/// a comparison.
 fn left_side(tokens: &[Placed], variables: Variables) -> Option<String> {
     let equals = tokens.iter().position(|t| t.token == Token::Symbol("="))?;
     let Token::Name(name) = &tokens.first()?.token else { return None };
@@ -42,7 +43,7 @@ fn variable(name: &str, variables: Variables) -> Option<Op> {
 }
 
 struct Parser<'a> {
-    /// Never empty; the last one is [`Token::End`] and is never passed.
+    /// Never empty; ends with [`Token::End`], which is never consumed.
     tokens: &'a [Placed],
     at: usize,
     depth: usize,
@@ -50,7 +51,7 @@ struct Parser<'a> {
     tape: Tape,
 }
 
-/// How tightly an operator binds, and what it does; the tightest is `^`.
+/// Precedences; a higher number binds tighter.
 const CONDITION: u8 = 1;
 const COMPARISON: u8 = 4;
 const UNARY: u8 = 7;
@@ -100,7 +101,7 @@ impl<'a> Parser<'a> {
             self.next();
             return Ok(());
         }
-        // What could begin a value here is a factor that is meant to be multiplied.
+        // A token that could start a value here suggests a missing `*`.
         if let problem @ (Problem::MissingTimes { .. } | Problem::SingleEquals) = self.no_operator()
         {
             return Err(self.fails(problem));
@@ -160,7 +161,7 @@ impl<'a> Parser<'a> {
                 break;
             };
             self.next();
-            // `^` binds to the right, and a sign may follow it: `2^-x`.
+            // `^` is right-associative, and a sign may follow it: `2^-x`.
             self.expression(if binding == POWER { UNARY } else { binding + 1 })?;
             self.tape.push(op);
             if binding == COMPARISON
@@ -264,14 +265,14 @@ fn unknown(name: &str, variables: Variables) -> Problem {
         .min()
         .filter(|(distance, _)| *distance <= 2 && 2 * distance < name.chars().count())
         .map(|(_, known)| known.to_owned());
-    // Variables run together: `xy`.
+    // Variables run together, such as `xy`.
     let letters: Vec<String> = name.chars().map(String::from).collect();
     let product = letters.iter().all(|letter| variable(letter, named).is_some());
     let near = near.or_else(|| product.then(|| letters.join("*")));
     Problem::UnknownName { name: name.to_owned(), near }
 }
 
-/// Letters to insert, delete or change to turn one name into the other (Levenshtein).
+/// The Levenshtein distance between two names.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

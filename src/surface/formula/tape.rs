@@ -1,9 +1,9 @@
-//! The postfix tape: operations on a stack of blocks of samples.
+//! The postfix tape: operations on a stack whose entries are blocks of samples.
 
-/// Samples evaluated together, so that the cost of finding out what to do is shared.
+/// How many samples are evaluated together, to amortize the dispatch of operations.
 const BLOCK: usize = 64;
 
-/// Names with a value.
+/// Named constants and their values.
 pub const CONSTANTS: [(&str, f64); 4] = [
     ("pi", std::f64::consts::PI),
     ("e", std::f64::consts::E),
@@ -11,8 +11,8 @@ pub const CONSTANTS: [(&str, f64); 4] = [
     ("nan", f64::NAN),
 ];
 
-/// Names of functions. `if(c, a, b)` is `c ? a : b`; `log` is the natural logarithm, as `ln`;
-/// `sinc(t)` is sin t / t, 1 at 0; `min` and `max` take two or more.
+/// The functions. `if(c, a, b)` is `c ? a : b`; `log` and `ln` are both the natural logarithm;
+/// `sinc(t)` is sin t / t, and 1 at 0; `min` and `max` take two or more arguments.
 pub const FUNCTIONS: [&str; 41] = [
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh",
     "atanh", "sqrt", "cbrt", "exp", "ln", "log", "log2", "log10", "pow", "abs", "sign", "floor",
@@ -49,7 +49,7 @@ impl Takes {
     }
 }
 
-/// One step of the tape.
+/// One operation of the tape.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Op {
     Constant(f64),
@@ -82,7 +82,7 @@ pub(super) enum Op {
     Binary(fn(f64, f64) -> f64),
 }
 
-/// A function's name, how many arguments it takes, and what it does.
+/// A function's name, the number of arguments it takes, and its operation.
 pub(super) fn function(name: &str) -> Option<(&'static str, Takes, Op)> {
     let name = FUNCTIONS.iter().find(|known| **known == name)?;
     let unary = |f| (Takes::One, Op::Unary(f));
@@ -101,7 +101,7 @@ pub(super) fn function(name: &str) -> Option<(&'static str, Takes, Op)> {
         "asinh" => unary(libm::asinh),
         "acosh" => unary(libm::acosh),
         "atanh" => unary(libm::atanh),
-        // Square roots are rounded correctly by every processor.
+        // IEEE 754 requires correctly rounded square roots, so the result is the same everywhere.
         "sqrt" => unary(f64::sqrt),
         "cbrt" => unary(libm::cbrt),
         "exp" => unary(libm::exp),
@@ -133,17 +133,17 @@ pub(super) fn function(name: &str) -> Option<(&'static str, Takes, Op)> {
     Some((name, takes, op))
 }
 
-/// A formula in postfix order; running it needs `depth` blocks of stack.
+/// A formula in postfix order. Running it needs a stack of `depth` blocks.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tape {
     ops: Vec<Op>,
-    /// Blocks on the stack after the last step.
+    /// Stack height after the last operation, in blocks.
     height: usize,
     depth: usize,
 }
 
 impl PartialEq for Tape {
-    /// Functions are compared by how they print, which is enough for tests.
+    /// Compares debug output, since function pointers have no reliable equality. Good enough for tests.
     fn eq(&self, other: &Self) -> bool {
         format!("{:?}", self.ops) == format!("{:?}", other.ops)
     }
@@ -152,7 +152,7 @@ impl PartialEq for Tape {
 impl Tape {
     pub(super) fn push(&mut self, op: Op) {
         use Op::*;
-        // Squaring is by far the commonest power, and is rounded the same as a product.
+        // Squares are by far the most common powers; the result is rounded like a product.
         if let (Power, Some(Constant(two))) = (op, self.ops.last())
             && *two == 2.0
         {
@@ -172,7 +172,7 @@ impl Tape {
         self.ops.push(op);
     }
 
-    /// Evaluates the tape at each pair.
+    /// Evaluates the tape at each pair of variables.
     pub(super) fn run(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
         let mut stack = vec![[0.0; BLOCK]; self.depth + 1];
         let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK)).zip(out.chunks_mut(BLOCK));
@@ -186,7 +186,7 @@ impl Tape {
     fn run_block(&self, a: &[f64], b: &[f64], stack: &mut [[f64; BLOCK]]) {
         use Op::*;
         let n = a.len();
-        // One above the block at the top.
+        // Index of the first free block.
         let mut top = 0;
         for op in &self.ops {
             match *op {
@@ -264,7 +264,7 @@ fn truth(value: bool) -> f64 {
     if value { 1.0 } else { 0.0 }
 }
 
-/// `s` when it is chosen, otherwise `t`; not a number when either is not.
+/// `s` if it is chosen and `t` otherwise; NaN if either is NaN.
 fn extreme(s: f64, t: f64, s_is_chosen: bool) -> f64 {
     if s.is_nan() || s_is_chosen { s } else { t }
 }
