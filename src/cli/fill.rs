@@ -245,6 +245,7 @@ impl Picture<'_> {
             placed.plot.layers.retain(|layer| !layer.fills.is_empty());
         }
         if placed.cropped {
+            run.empty_because = "all of it lies beyond the margins".to_owned();
             run.notes.warnings.push("the picture was cut off at the margins".into());
         }
         run.plot_to(path, &page.paper.description(), placed.plot, &Options::for_drawings())

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use hiddenline::stages::optimize::{Options, near_overlap};
 use hiddenline::stages::page::{Crop, Orientation, Paper, PenRole, RefitOptions, refit};
+use hiddenline::stages::plot::Plot;
 use hiddenline::stages::read_svg::{self, SvgOptions};
 use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::Format;
@@ -177,6 +178,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
             ..Default::default()
         }];
     }
+    let n_read = n_strokes(&plot);
     let mut warnings: Vec<String> = read.warnings.into_iter().collect();
     let sheet = match &job.output.target.device {
         // To fit is to fit what the pen reaches.
@@ -223,7 +225,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         plot.title = name.clone();
     }
     plot.source = source::source(config::arguments());
-    run.stats.strokes = plot.layers.iter().map(|layer| layer.lines.len()).sum();
+    run.stats.strokes = n_strokes(&plot);
+    run.empty_because = why_empty(job, n_read, run.stats.strokes);
     run.stats.points = plot.layers.iter().map(|layer| layer.lines.n_points()).sum();
     run.notes.add(Notes {
         warnings,
@@ -237,6 +240,21 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let paper = format!("{} x {} mm", tenths(plot.width_mm), tenths(plot.height_mm));
     let usual = Options { shortest_mm: job.shortest_mm, ..Options::default() };
     run.plot(&paper, plot, &usual)
+}
+
+fn n_strokes(plot: &Plot) -> usize {
+    plot.layers.iter().map(|layer| layer.lines.len()).sum()
+}
+
+/// Why nothing is left to draw, if that happens: `n_read` strokes were read and `n_kept` of them lie on
+/// the page.
+fn why_empty(job: &Job, n_read: usize, n_kept: usize) -> String {
+    match (n_read, n_kept, job.sheet.crop) {
+        (0, ..) => "the SVG has no visible strokes".to_owned(),
+        (_, 0, Crop::Margin) => "every stroke lies outside of the margins".to_owned(),
+        (_, 0, _) => "every stroke lies outside of the page".to_owned(),
+        _ => format!("every stroke is shorter than --shortest-stroke {} mm", job.shortest_mm),
+    }
 }
 
 fn tenths(mm: f64) -> f64 {

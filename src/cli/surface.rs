@@ -115,6 +115,12 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         (None, Some(scene)) => draw_by_mesh(job, scene, &sheet, stats)?,
         (None, None) => Strokes::default(),
     };
+    if drawing.is_empty() && extent.corners().is_some() {
+        run.empty_because = format!(
+            "every line of the kinds selected is hidden or shorter than {DEFAULT_SHORTEST_STROKE_MM} \
+             mm; give other --lines or a larger --drawing-scale"
+        );
+    }
     run.notes.warnings.extend(crowding(job, &drawing, &sheet.page));
     if let Some(titles) = job.titles.as_ref().filter(|_| !drawing.is_empty()) {
         drawing.append(&around);

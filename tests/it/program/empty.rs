@@ -60,3 +60,41 @@ fn coordinates_near_the_end_of_double_precision_are_named() {
     let apart = draw(&["--eye", "-1e308,0,0", "--target", "1e308,0,0"]);
     assert_fails(&apart, 1, "eye and target are too far apart");
 }
+
+/// What the program says about a run that succeeds.
+fn said(folder: &std::path::Path, arguments: &[&str]) -> String {
+    let output = hiddenline(folder, arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    text(&output.stderr)
+}
+
+#[test]
+fn an_empty_drawing_of_a_surface_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let surface = |more: &[&str]| {
+        said(folder.path(), &[&["surface", "x+y", "--no-axes", "-o", "out.svg"], more].concat())
+    };
+    let folds = surface(&["--lines", "silhouette"]);
+    assert!(folds.contains("every line of the kinds selected is hidden or shorter"), "{folds}");
+    let away = surface(&["--eye", "0,0,20", "--target", "0,0,40"]);
+    assert!(away.contains("the drawing is empty: nothing is in view"), "{away}");
+}
+
+#[test]
+fn an_empty_drawing_from_an_svg_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let optimize = |path: &str, more: &[&str]| {
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' \
+             viewBox='0 0 100 100'><path fill='none' stroke='black' d='{path}'/></svg>"
+        );
+        std::fs::write(folder.path().join("in.svg"), svg).unwrap();
+        said(folder.path(), &[&["optimize", "in.svg", "-o", "out.svg"], more].concat())
+    };
+    let nothing = optimize("", &[]);
+    assert!(nothing.contains("the drawing is empty: the SVG has no visible strokes"), "{nothing}");
+    let outside = optimize("M 200 200 L 300 300", &[]);
+    assert!(outside.contains("the drawing is empty: every stroke lies outside"), "{outside}");
+    let short = optimize("M 10 10 L 11 10", &["--shortest-stroke", "5"]);
+    assert!(short.contains("every stroke is shorter than --shortest-stroke 5 mm"), "{short}");
+}
