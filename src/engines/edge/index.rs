@@ -10,9 +10,9 @@
 //!   level 0   ├───┬───┼───┬───┤   small triangles; 2^k × 2^k of these make a cell of level k
 //! ```
 //!
-//! A cell that a single triangle covers wholly knows a depth behind which everything is hidden
-//! there (W. R. Franklin, SIGGRAPH 1980). Triangles and segments behind it are dropped, so that
-//! cost does not grow with the number of layers.
+//! A cell that triangles cover without a gap has a depth behind which everything is hidden there
+//! (W. R. Franklin, SIGGRAPH 1980; see [`covered`]). Triangles and segments behind it are dropped, so
+//! that the cost does not grow with the number of layers behind a wall.
 //!
 //! Nothing here decides visibility: boxes and depths are rounded outwards, so that at worst a
 //! triangle is offered in vain.
@@ -107,11 +107,7 @@ impl ImageIndex {
         settings: &Settings,
     ) -> Self {
         let rounding = Rounding::new(view);
-        // Roberts wants all that is in front, however far.
-        let place = |triangle| match rounding.place(view, triangle) {
-            Place::Within(bounds) => Place::Within(bounds.reaching(f64::INFINITY)),
-            place => place,
-        };
+        let place = |triangle| rounding.place(view, triangle);
         let n_triangles = view.scene().triangles().len();
         let covers = (!settings.count_layers).then_some(settings.contact_tolerance);
         Self::of_items(view, segments, n_triangles, covers, place)
@@ -120,7 +116,8 @@ impl ImageIndex {
     /// An index of the items numbered below `n_items` that may lie near or in front of some of
     /// `segments`.
     ///
-    /// With `covers`, a contact tolerance, items behind cells that one triangle covers are left out.
+    /// With `covers`, a contact tolerance, items behind covered cells are left out; they must then be
+    /// the triangles of the scene.
     pub(super) fn of_items<'s>(
         view: &ViewedScene,
         segments: impl Iterator<Item = &'s Segment> + Clone,
@@ -388,7 +385,8 @@ impl Visitor {
         if index.everywhere.iter().any(|&triangle| test(triangle)) {
             return true;
         }
-        let bounds = index.rounding.bounds(segment.image, segment.depth);
+        // Whatever lies in front may cover it, however far in front.
+        let bounds = index.bounds_of(segment).with_all_nearer();
         let corners = |triangle: u32| view.scene().triangles()[triangle as usize];
         self.any_within(index, view, segment, &bounds, corners, test)
     }

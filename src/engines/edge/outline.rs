@@ -20,7 +20,7 @@
 
 use super::appel::Sides;
 use super::index::{ImageIndex, Visitor};
-use super::rounding::{Place, Rounding};
+use super::rounding::Rounding;
 use super::segment::Segment;
 use super::shadow::{Cover, image_cover};
 use super::sweep::Sweep;
@@ -70,10 +70,7 @@ pub fn find(view: &ViewedScene) -> Outline {
     let n_triangles = view.scene().triangles().len();
     let index =
         ImageIndex::of_items(view, segments.iter().flatten(), n_triangles, None, |triangle| {
-            match rounding.place(view, triangle) {
-                Place::Within(bounds) => Place::Within(bounds.reaching(f64::INFINITY)),
-                place => place,
-            }
+            rounding.place(view, triangle)
         });
     let sides = Sides::new(view);
     let parts: Vec<Vec<Vec<[f64; 2]>>> = segments

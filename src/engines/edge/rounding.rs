@@ -85,6 +85,11 @@ impl Rounding {
         Self { flat_error, depth_error: DEPTH_ERROR * largest }
     }
 
+    /// How far a depth may be off.
+    pub(super) fn depth_error(&self) -> f64 {
+        self.depth_error
+    }
+
     /// Whether images reach infinitely far: in perspective, near the eye's plane.
     pub(super) fn is_unbounded(&self) -> bool {
         self.flat_error.is_none()

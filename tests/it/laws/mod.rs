@@ -4,6 +4,8 @@
 mod appel;
 mod bends;
 mod closed_forms;
+mod coincidences;
+mod covered_cells;
 mod drawings;
 pub(crate) mod engines;
 mod extent;
@@ -13,6 +15,8 @@ mod invariance;
 mod layers;
 mod materials;
 mod outline;
+mod predicates;
+mod short_strokes;
 mod strokes;
 mod views;
 mod wires;

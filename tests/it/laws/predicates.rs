@@ -1,0 +1,154 @@
+//! Signs of nearly degenerate points with full mantissas, at all scales, against exact integers.
+
+use crate::oracle::exact::{
+    Int, Plane as Form, Point, Ratio, common_exponent, plane_through, scaled, sign, value,
+};
+use crate::scenes::Rng;
+use glam::{DVec3, dvec3};
+use hiddenline::camera::{Camera, DEFAULT_NEAR, Projection};
+use hiddenline::predicates::{Corner, Estimate, PiercePoint, Place, PlaneName, Planes, Sign};
+
+/// A number from −1 to 1 with all its bits in use.
+fn number(rng: &mut Rng) -> f64 {
+    2.0 * ((rng.next() >> 11) as f64 / (1u64 << 53) as f64) - 1.0
+}
+
+fn point(rng: &mut Rng) -> DVec3 {
+    dvec3(number(rng), number(rng), number(rng))
+}
+
+/// The points as integers, all by one factor.
+fn exact(points: &[DVec3]) -> Vec<Point> {
+    let k = common_exponent(points.iter().flat_map(|p| p.to_array()));
+    let of = |p: &DVec3| {
+        let [x, y, z] = p.to_array().map(|x| scaled(x, k));
+        [x, y, z, Int::ONE]
+    };
+    points.iter().map(of).collect()
+}
+
+fn as_number(sign: Sign) -> i32 {
+    match sign {
+        Sign::Negative => -1,
+        Sign::Zero => 0,
+        Sign::Positive => 1,
+    }
+}
+
+/// Where the line through two points meets a plane that they lie on both sides of.
+fn crossing(p: &Point, q: &Point, plane: &Form) -> Point {
+    let (of_p, of_q) = (value(plane, p), value(plane, q));
+    let turn = Int::from(sign(&(&of_p - &of_q)));
+    std::array::from_fn(|i| (&q[i] * &of_p - &p[i] * &of_q) * &turn)
+}
+
+/// A triangle whose plane passes through a point, or by it within a few roundings.
+fn triangle_at(rng: &mut Rng, p: DVec3) -> [DVec3; 3] {
+    let (u, v) = (point(rng), point(rng));
+    [p + u, p + v, p - u - v]
+}
+
+const SCALES: [i32; 3] = [0, 400, -400];
+
+#[test]
+fn a_nearly_coplanar_vertex_lies_on_the_side_that_integers_say() {
+    let (mut rng, mut n_sides) = (Rng(1), [0; 3]);
+    for i in 0..3000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let [p, q, r] = [0; 3].map(|_| point(&mut rng));
+        let x = p + number(&mut rng) * (q - p) + number(&mut rng) * (r - p);
+        let positions = [p, q, r, x].map(|p| p * scale);
+        let triangles = [[0, 1, 2]];
+        let planes = Planes::new(&positions, &triangles);
+        let plane = planes.plane(PlaneName::Triangle(0));
+        let found = as_number(planes.side(&plane, &planes.vertex(3)).1);
+        let [a, b, c, x] = <[Point; 4]>::try_from(exact(&positions)).unwrap();
+        assert_eq!(found, -sign(&value(&plane_through(&a, &b, &c), &x)), "{positions:?}");
+        n_sides[(found + 1) as usize] += 1;
+
+        let eye = positions[3];
+        let near = Projection::Perspective { fov_deg: 40.0, near: DEFAULT_NEAR };
+        let camera = Camera::new(eye, eye + scale * dvec3(1.0, 2.0, 0.5), DVec3::Z, near).unwrap();
+        let planes = Planes::new(&positions, &triangles).seen_by(&camera);
+        assert_eq!(as_number(planes.side_of_eye(PlaneName::Triangle(0))), found, "{positions:?}");
+    }
+    assert!(n_sides[0] > 500 && n_sides[2] > 500, "{n_sides:?}");
+}
+
+#[test]
+fn a_cut_edge_ends_on_the_side_that_integers_say() {
+    let (mut rng, mut n_checked) = (Rng(2), 0);
+    for i in 0..3000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let [p, q] = [0; 2].map(|_| point(&mut rng));
+        let middle = p + 0.5 * (1.0 + number(&mut rng)) * (q - p);
+        let [a, b, c] = triangle_at(&mut rng, middle);
+        let positions = [p, q, a, b, c].map(|p| p * scale);
+        let triangles = [[2, 3, 4], [5, 6, 7]];
+        let planes = Planes::new(&positions, &triangles[..1]);
+        let name = PlaneName::Triangle(0);
+        let ends = [0, 1].map(|v| planes.vertex(v));
+        let at = [0, 1].map(|k| planes.side(&planes.plane(name), &ends[k]));
+        if at[0].1.times(at[1].1) != Sign::Negative {
+            continue;
+        }
+        let at: [Estimate; 2] = at.map(|(estimate, _)| estimate);
+        let place = Place::OnEdge([0, 1], name);
+        let cut: Corner = planes.corner_between([&ends[0], &ends[1]], at, place);
+        let other = triangle_at(&mut rng, cut.point / scale).map(|p| p * scale);
+        let positions = [positions.as_slice(), &other].concat();
+        let planes = Planes::new(&positions, &triangles);
+        let found = planes.side(&planes.plane(PlaneName::Triangle(1)), &cut).1;
+        let exact = exact(&positions);
+        let form = |[a, b, c]: [usize; 3]| plane_through(&exact[a], &exact[b], &exact[c]);
+        let truth = crossing(&exact[0], &exact[1], &form([2, 3, 4]));
+        assert_eq!(as_number(found), -sign(&value(&form([5, 6, 7]), &truth)), "{positions:?}");
+        n_checked += 1;
+    }
+    assert!(n_checked > 1500, "{n_checked}");
+}
+
+/// The fraction with the given larger denominator next to `c / d`: `a d − b c` is one.
+fn next_fraction(c: i64, d: i64) -> Option<(i64, i64)> {
+    let (mut r, mut s) = ((c, d), (0i64, 1i64));
+    while r.0 != 0 {
+        let quotient = r.1 / r.0;
+        r = (r.1 - quotient * r.0, r.0);
+        s = (s.1 - quotient * s.0, s.0);
+    }
+    // The gcd is r.1 and s.1 · c = r.1 modulo d.
+    let b = (-s.1).rem_euclid(d);
+    let a = (i128::from(b) * i128::from(c) + 1) / i128::from(d);
+    (r.1 == 1 && b > 0 && a < i128::from(b)).then_some((a as i64, b))
+}
+
+#[test]
+fn points_that_differ_by_less_than_two_mantissas_tell_are_in_their_true_order() {
+    let (mut rng, mut n_checked) = (Rng(3), 0);
+    for _ in 0..2000 {
+        let d = (1i64 << 50) + (rng.next() >> 14) as i64;
+        let c = 1 + (rng.next() % (d as u64 - 1)) as i64;
+        let Some((a, b)) = next_fraction(c, d) else { continue };
+        // Lines from below the x axis to above it that meet it at `start` plus a fraction.
+        let start = (1i64 << 40) as f64 + rng.integer(0, 1000);
+        let line = |part: i64, whole: i64| {
+            let low = dvec3(start, -(part as f64), 0.0);
+            let high = dvec3(start + 1.0, (whole - part) as f64, 0.0);
+            [low, high, low + DVec3::Z]
+        };
+        let axis = [DVec3::ZERO, dvec3((1i64 << 42) as f64, 0.0, 0.0)];
+        let positions = [&axis[..], &line(a, b), &line(c, d)].concat();
+        let points = [[2, 3, 4], [5, 6, 7]]
+            .map(|triangle| PiercePoint::new(&positions, [0, 1], triangle, None));
+        let exact = exact(&positions);
+        let [first, last] = [[2, 3, 4], [5, 6, 7]].map(|[p, q, r]: [usize; 3]| {
+            let plane = plane_through(&exact[p], &exact[q], &exact[r]);
+            let [x, _, _, w] = crossing(&exact[0], &exact[1], &plane);
+            Ratio::new(x, w)
+        });
+        assert_eq!(points[0].order(&points[1]), first.cmp(&last), "{a}/{b} and {c}/{d}");
+        assert_eq!(points[1].order(&points[0]), last.cmp(&first), "{a}/{b} and {c}/{d}");
+        n_checked += usize::from(first != last);
+    }
+    assert!(n_checked > 500, "{n_checked}");
+}
