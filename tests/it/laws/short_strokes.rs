@@ -6,7 +6,6 @@ use hiddenline::classify::LineSelection;
 use hiddenline::draw::{DrawOptions, HiddenLines, draw};
 use hiddenline::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::model::scene::Scene;
-use hiddenline::stats::Stats;
 
 /// Strokes as (visible, first x, last x) of the level lines of some faces, seen from above, one
 /// millimeter to the unit.
@@ -27,13 +26,14 @@ fn level_strokes(faces: &[[DVec3; 4]], shortest_stroke_mm: f64) -> Vec<(bool, f6
         shortest_stroke_mm,
         ..DrawOptions::default()
     };
-    let drawing = draw(&scene, &camera, &options, |_| 1.0, &mut Stats::default());
+    let drawing = draw(&scene, &camera, &options, 1.0).drawing;
     let mut strokes: Vec<(bool, f64, f64)> = Vec::new();
     for stroke in drawing.iter() {
         for pair in stroke.points.windows(2).filter(|pair| pair[0].y == pair[1].y) {
             // Edges of the bar alone: the plates' lie elsewhere.
             if pair[0].y.abs() < 1.0 {
-                let (a, b) = (pair[0].x.min(pair[1].x), pair[0].x.max(pair[1].x));
+                let [a, b] = [0, 1].map(|i| (pair[i].x * 1e9).round() / 1e9);
+                let (a, b) = (a.min(b), a.max(b));
                 strokes.push((stroke.qi == 0, a, b));
             }
         }
