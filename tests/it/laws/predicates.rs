@@ -108,9 +108,9 @@ fn a_cut_edge_ends_on_the_side_that_integers_say() {
     assert!(n_checked > 1500, "{n_checked}");
 }
 
-/// The fraction with the given larger denominator next to `c / d`: `a d − b c` is one.
+/// A fraction `a / b` next to `c / d`, so that `a d − b c` is one; `b` is smaller than `d`.
 fn next_fraction(c: i64, d: i64) -> Option<(i64, i64)> {
-    let (mut r, mut s) = ((c, d), (0i64, 1i64));
+    let (mut r, mut s) = ((c, d), (1i64, 0i64));
     while r.0 != 0 {
         let quotient = r.1 / r.0;
         r = (r.1 - quotient * r.0, r.0);
@@ -136,7 +136,9 @@ fn points_that_differ_by_less_than_two_mantissas_tell_are_in_their_true_order() 
             let high = dvec3(start + 1.0, (whole - part) as f64, 0.0);
             [low, high, low + DVec3::Z]
         };
-        let axis = [DVec3::ZERO, dvec3((1i64 << 42) as f64, 0.0, 0.0)];
+        // A length that is no power of two, so that quotients are rounded more than once.
+        let length = (1i64 << 42) as f64 + 2.0 * rng.integer(0, 1 << 20) + 1.0;
+        let axis = [DVec3::ZERO, dvec3(length, 0.0, 0.0)];
         let positions = [&axis[..], &line(a, b), &line(c, d)].concat();
         let points = [[2, 3, 4], [5, 6, 7]]
             .map(|triangle| PiercePoint::new(&positions, [0, 1], triangle, None));
