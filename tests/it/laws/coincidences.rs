@@ -110,7 +110,14 @@ fn faces_that_share_a_diagonal_cross_there_only_when_they_lie_in_two_planes() {
     assert_eq!(n_lines(&[&upright, &flat]), 1);
     assert_eq!(n_lines(&[&square, &flat]), 0);
     assert_eq!(n_lines(&[&flat, &square]), 0);
-    assert_eq!(n_lines(&[&square, &[p, q, dvec3(9.0, 1.0, 0.0)]]), 0);
+    // A fin on the square, and a face beside the fin that lies on the square.
+    let fin = [p, q, dvec3(2.0, 2.0, 3.0)];
+    for lying in [[p, q, dvec3(1.0, 2.0, 0.0)], [p, q, dvec3(9.0, 1.0, 0.0)]] {
+        assert_eq!(n_lines(&[&square, &lying]), 0);
+        assert_eq!(n_lines(&[&square, &fin, &lying]), 0);
+        assert_eq!(n_lines(&[&square, &lying, &fin]), 0);
+    }
+    assert_eq!(n_lines(&[&square, &fin, &[p, q, dvec3(2.0, 2.0, -3.0)]]), 1);
 }
 
 /// Polygons with holes, joined to the outline by bridges: the corners where bridges start and end
