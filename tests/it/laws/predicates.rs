@@ -1,12 +1,15 @@
 //! Signs of nearly degenerate points with full mantissas, at all scales, against exact integers.
 
 use crate::oracle::exact::{
-    Int, Plane as Form, Point, Ratio, common_exponent, plane_through, scaled, sign, value,
+    Int, Plane as Form, Point, Ratio, common_exponent, cross, decomposed, dot, minus,
+    plane_through, scaled, sign, value,
 };
 use crate::scenes::Rng;
 use glam::{DVec3, dvec3};
 use hiddenline::camera::{Camera, DEFAULT_NEAR, Projection};
-use hiddenline::predicates::{Corner, Estimate, PiercePoint, Place, PlaneName, Planes, Sign};
+use hiddenline::predicates::{
+    Corner, Estimate, PiercePoint, Place, PlaneName, Planes, Sight, Sign, Solid,
+};
 
 /// A number from −1 to 1 with all its bits in use.
 fn number(rng: &mut Rng) -> f64 {
@@ -65,6 +68,8 @@ fn a_nearly_coplanar_vertex_lies_on_the_side_that_integers_say() {
         let [a, b, c, x] = <[Point; 4]>::try_from(exact(&positions)).unwrap();
         assert_eq!(found, -sign(&value(&plane_through(&a, &b, &c), &x)), "{positions:?}");
         n_sides[(found + 1) as usize] += 1;
+        let solid = Solid::new(&positions);
+        assert_eq!(as_number(solid.side_of([0, 1, 2], 3)), -found, "{positions:?}");
 
         let eye = positions[3];
         let near = Projection::Perspective { fov_deg: 40.0, near: DEFAULT_NEAR };
@@ -82,7 +87,12 @@ fn a_cut_edge_ends_on_the_side_that_integers_say() {
         let scale = 2f64.powi(SCALES[i % 3]);
         let [p, q] = [0; 2].map(|_| point(&mut rng));
         let middle = p + 0.5 * (1.0 + number(&mut rng)) * (q - p);
-        let [a, b, c] = triangle_at(&mut rng, middle);
+        let [mut a, mut b, c] = triangle_at(&mut rng, middle);
+        if i % 2 == 0 {
+            // At a flat angle the cut is less certain.
+            a = middle + 0.7 * (q - p) + 0.01 * point(&mut rng);
+            b = middle - 0.7 * (q - p) + 0.01 * point(&mut rng);
+        }
         let positions = [p, q, a, b, c].map(|p| p * scale);
         let triangles = [[2, 3, 4], [5, 6, 7]];
         let planes = Planes::new(&positions, &triangles[..1]);
@@ -95,17 +105,30 @@ fn a_cut_edge_ends_on_the_side_that_integers_say() {
         let at: [Estimate; 2] = at.map(|(estimate, _)| estimate);
         let place = Place::OnEdge([0, 1], name);
         let cut: Corner = planes.corner_between([&ends[0], &ends[1]], at, place);
-        let other = triangle_at(&mut rng, cut.point / scale).map(|p| p * scale);
+        // As far off as the cut is uncertain.
+        let off = if i % 2 == 0 { 1e-14 * number(&mut rng) } else { 0.0 };
+        let near = cut.point / scale + off * (q - p);
+        let other = triangle_at(&mut rng, near).map(|p| p * scale);
         let positions = [positions.as_slice(), &other].concat();
         let planes = Planes::new(&positions, &triangles);
         let found = planes.side(&planes.plane(PlaneName::Triangle(1)), &cut).1;
+        let corners = [5, 6, 7].map(|vertex| planes.vertex(vertex));
+        let volume = planes.volume([&corners[0], &corners[1], &corners[2], &cut]);
+        assert_eq!(volume, found, "{positions:?}");
         let exact = exact(&positions);
         let form = |[a, b, c]: [usize; 3]| plane_through(&exact[a], &exact[b], &exact[c]);
         let truth = crossing(&exact[0], &exact[1], &form([2, 3, 4]));
         assert_eq!(as_number(found), -sign(&value(&form([5, 6, 7]), &truth)), "{positions:?}");
         n_checked += 1;
+
+        let pierced = [PiercePoint::new(&positions, [0, 1], [2, 3, 4], None)];
+        let points = [positions.as_slice(), &[pierced[0].rounded()]].concat();
+        let camera = camera(scale * dvec3(9.0, 8.0, 7.0), -scale * DVec3::ONE, DEFAULT_NEAR);
+        let sight = Sight::with_pierced(&points, &pierced, &camera);
+        // Depth is negative on the side to which the normal points.
+        assert_eq!(sight.depth([5, 6, 7], 8), found.flipped(), "{positions:?}");
     }
-    assert!(n_checked > 1500, "{n_checked}");
+    assert!(n_checked > 1000, "{n_checked}");
 }
 
 /// A fraction `a / b` next to `c / d`, so that `a d − b c` is one; `b` is smaller than `d`.
@@ -153,4 +176,75 @@ fn points_that_differ_by_less_than_two_mantissas_tell_are_in_their_true_order() 
         n_checked += usize::from(first != last);
     }
     assert!(n_checked > 500, "{n_checked}");
+}
+
+fn camera(eye: DVec3, forward: DVec3, near: f64) -> Camera {
+    let projection = Projection::Perspective { fov_deg: 40.0, near };
+    Camera::new(eye, eye + forward, DVec3::Z, projection).unwrap()
+}
+
+#[test]
+fn a_face_seen_nearly_edge_on_faces_as_integers_say() {
+    let mut rng = Rng(4);
+    for i in 0..2000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let [p, q, r] = [0; 3].map(|_| point(&mut rng));
+        let mut in_plane = || p + number(&mut rng) * (q - p) + number(&mut rng) * (r - p);
+        let (last, eye) = (in_plane(), in_plane());
+        let points = [p, q, r, last, eye].map(|p| p * scale);
+        let camera = camera(points[4], scale * dvec3(1.0, 2.0, 0.5), DEFAULT_NEAR);
+        let found = Sight::new(&points[..4], &camera).facing(&[0, 1, 2, 3]);
+        let [p, q, r, last, eye] = <[Point; 5]>::try_from(exact(&points)).unwrap();
+        // Newell's normal is the sum over a fan.
+        let sum =
+            value(&plane_through(&p, &q, &r), &eye) + value(&plane_through(&p, &r, &last), &eye);
+        assert_eq!(as_number(found), -sign(&sum), "{points:?}");
+    }
+}
+
+#[test]
+fn a_vertex_next_to_the_near_plane_is_kept_when_integers_say_so() {
+    let (mut rng, mut n_kept) = (Rng(5), 0);
+    for i in 0..2000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let (eye, forward, near) = (point(&mut rng), point(&mut rng), 0.3 + 0.1 * number(&mut rng));
+        let camera = camera(eye * scale, forward * scale, near);
+        let x = (eye + near * forward + 4.0 * forward.cross(point(&mut rng))) * scale;
+        let found = Sight::new(&[x], &camera).near_distance(0).1;
+        let forward = camera.forward();
+        let k = common_exponent([x, camera.eye(), forward].iter().flat_map(|p| p.to_array()));
+        let [x, eye, forward] =
+            [x, camera.eye(), forward].map(|p| p.to_array().map(|x| scaled(x, k)));
+        let (mantissa, exponent) = decomposed(near);
+        let distance = dot(&minus(&x, &eye), &forward) << (-exponent) as usize;
+        let truth = sign(&(distance - Int::from(mantissa) * dot(&forward, &forward)));
+        assert_eq!(as_number(found), truth, "{i}");
+        n_kept += usize::from(truth >= 0);
+    }
+    assert!(n_kept > 500 && n_kept < 1500, "{n_kept}");
+}
+
+#[test]
+fn a_segment_nearly_at_the_contact_tolerance_touches_when_integers_say_so() {
+    let (mut rng, mut n_touching) = (Rng(6), 0);
+    for i in 0..2000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let [p, q, r] = [0; 3].map(|_| point(&mut rng));
+        let distance = 0.1 + 0.05 * number(&mut rng);
+        let up = distance * (q - p).cross(r - p).normalize();
+        let in_plane = p + number(&mut rng) * (q - p) + number(&mut rng) * (r - p);
+        let positions = [p, q, r, in_plane, in_plane + up].map(|p| p * scale);
+        let camera = camera(scale * dvec3(9.0, 8.0, 7.0), -scale * DVec3::ONE, DEFAULT_NEAR);
+        let distance = distance * scale;
+        let found = Sight::new(&positions, &camera).in_contact([0, 1, 2], [3, 4], distance);
+        let numbers = positions.iter().flat_map(|p| p.to_array());
+        let k = common_exponent(numbers.chain([distance]));
+        let [p, q, r, _, x] = positions.map(|p| p.to_array().map(|x| scaled(x, k)));
+        let normal = cross(&minus(&q, &p), &minus(&r, &p));
+        let (height, distance) = (dot(&normal, &minus(&x, &p)), scaled(distance, k));
+        let truth = &height * &height <= &distance * &distance * dot(&normal, &normal);
+        assert_eq!(found, truth, "{positions:?}");
+        n_touching += usize::from(truth);
+    }
+    assert!(n_touching > 500 && n_touching < 1500, "{n_touching}");
 }
