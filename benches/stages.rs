@@ -14,7 +14,7 @@ use hiddenline::stages::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projecti
 use hiddenline::stages::chain::{ChainOptions, chain};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
 use hiddenline::stages::draw::HiddenLines;
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::image::raster::Corners;
 use hiddenline::stages::engines::image::{self, PixelMap, Raster};
 use hiddenline::stages::model::mesh::Mesh;
@@ -69,8 +69,8 @@ fn outlines() -> LineSelection {
     LineSelection::NONE.with(StrokeKind::Silhouette).with(StrokeKind::Boundary)
 }
 
-fn settings() -> Settings {
-    Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: true }
+fn settings() -> VisibilityOptions {
+    VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: true }
 }
 
 fn chaining() -> ChainOptions {
@@ -109,21 +109,21 @@ fn c_classify(bencher: Bencher, n: u32) {
 fn d_visibility_of_outlines(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, outlines());
-    bencher.bench_local(|| solve(black_box(&view), Engine::default(), &settings()));
+    bencher.bench_local(|| solve(black_box(&view), LineEngine::default(), &settings()));
 }
 
 #[divan::bench(args = SIZES)]
 fn e_visibility_of_all_edges(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, LineSelection::all_edges());
-    bencher.bench_local(|| solve(black_box(&view), Engine::default(), &settings()));
+    bencher.bench_local(|| solve(black_box(&view), LineEngine::default(), &settings()));
 }
 
 #[divan::bench(args = SIZES)]
 fn f_strokes_of_all_edges(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, LineSelection::all_edges());
-    let (visibility, ..) = solve(&view, Engine::default(), &settings());
+    let (visibility, ..) = solve(&view, LineEngine::default(), &settings());
     bencher.bench_local(|| chain(black_box(&view), &visibility, None, &chaining()));
 }
 
@@ -143,7 +143,7 @@ fn h_z_buffer_of_2000_x_2000_pixels(bencher: Bencher, n: u32) {
 fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, LineSelection::all_edges());
-    let (visibility, ..) = solve(&view, Engine::default(), &settings());
+    let (visibility, ..) = solve(&view, LineEngine::default(), &settings());
     let drawing = chain(&view, &visibility, None, &chaining());
     bencher.bench_local(|| {
         let page = Page::place(&drawing.extent(&camera()), &camera(), &PageOptions::default())

@@ -14,11 +14,11 @@
 //! | intersection | none | the line in which two faces cross |
 //! | wire | none | a polyline of the model that borders no face |
 //!
-//! A bend of a face, where the scene knows of any (see [`crate::model::bends`]), is a silhouette where one
-//! of the triangles along it faces the eye and the other does not.
+//! A bend of a face (see [`crate::model::bends`]) is a silhouette when one of the triangles along it
+//! faces the eye and the other does not.
 //!
-//! Two uses that run the same way mean that the faces are wound against each other; the second
-//! face is then turned over for the comparison, so kinds do not depend on the winding.
+//! When both uses run the same way, the faces are wound inconsistently; the second face is then
+//! flipped for the comparison, so kinds do not depend on the winding.
 
 use crate::camera::{Camera, ImagePoint};
 use crate::model::scene::{LineSource, Scene};
@@ -41,7 +41,7 @@ pub struct LineSelection {
 }
 
 impl LineSelection {
-    /// No line.
+    /// No lines.
     pub const NONE: Self = Self { kinds: 0 };
 
     /// Adds a kind.
@@ -50,7 +50,7 @@ impl LineSelection {
         Self { kinds: self.kinds | 1 << kind as u32 }
     }
 
-    /// Every edge of the mesh, but no line that is not one of its edges.
+    /// Every edge of the mesh, but no other lines.
     pub const fn all_edges() -> Self {
         Self::NONE
             .with(StrokeKind::Silhouette)
@@ -66,8 +66,8 @@ impl LineSelection {
         Self { kinds: self.kinds | other.kinds }
     }
 
-    /// Adds the outline: of silhouette, boundary and non-manifold edges the parts beside which only
-    /// the background is seen (see [`crate::engines::edge::outline`]).
+    /// Adds the outline: the parts of silhouette, boundary, and non-manifold edges that are seen
+    /// against the background only (see [`crate::engines::edge::outline`]).
     #[must_use]
     pub const fn with_outline(self) -> Self {
         Self { kinds: self.kinds | OUTLINE }
@@ -78,7 +78,7 @@ impl LineSelection {
         self.kinds & OUTLINE != 0
     }
 
-    /// Whether anything else than the outline is drawn.
+    /// Whether anything other than the outline is drawn.
     pub const fn has_more_than_outline(self) -> bool {
         self.kinds & !OUTLINE != 0
     }
@@ -114,9 +114,8 @@ pub struct SelectedLine {
 /// Points and segments that belong to a view, not to the scene: hatching, cuts by planes, contours of
 /// smooth surfaces.
 ///
-/// Points that are vertices or ends of lines of the scene keep their numbers; further ones are exact
-/// points in which an edge meets a face. A segment hides nothing. Where it lies in a face's plane,
-/// that face does not hide it.
+/// The scene's points keep their numbers; further ones are exact points where an edge meets a face. A
+/// segment hides nothing. A face does not hide a segment in its own plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViewSegments {
     /// The scene's points, then those of the view, rounded.
@@ -164,7 +163,7 @@ pub struct ViewedScene<'a> {
     /// Empty when every face is a triangle, since the turns then say it all.
     facings: Vec<Sign>,
     drawn: Vec<SelectedLine>,
-    /// Those of `drawn` of which only the outline is wanted.
+    /// The lines in `drawn` that are drawn only where they are outline.
     only_outline: Vec<u32>,
     near_plane_cuts: bool,
     own: Option<&'a ViewSegments>,
@@ -174,14 +173,14 @@ impl<'a> ViewedScene<'a> {
     /// Classifies faces and edges; edges of the kinds in `lines` are drawn, in the order of the
     /// topology.
     ///
-    /// An edge is selected by any kind that applies to it, and bears the first. Edges whose image
-    /// is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
+    /// An edge is selected by any kind that applies to it, and gets the first that does. Edges whose
+    /// image is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
         Self::with(scene, camera, lines, crease_deg, None)
     }
 
-    /// The same with segments of the view's own, of which all are drawn. They follow the lines of the
-    /// scene.
+    /// The same with additional segments, all of which are drawn. They are numbered after the lines of
+    /// the scene.
     pub fn with_segments(
         scene: &'a Scene,
         camera: &Camera,
@@ -243,11 +242,11 @@ impl<'a> ViewedScene<'a> {
         view
     }
 
-    /// Draws the given edges, and only those, whatever their faces are like.
+    /// Draws the given edges and no others, whatever kinds apply to them.
     ///
-    /// They need not be in order. An edge that is given more than once bears the last of its kinds
-    /// in the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when there
-    /// is no such edge. O(faces + edges log edges).
+    /// They may come in any order. An edge that is given more than once gets the last of its kinds in
+    /// the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when an edge does
+    /// not exist. O(faces + edges log edges).
     pub fn with_edges(scene: &'a Scene, camera: &Camera, mut edges: Vec<SelectedLine>) -> Self {
         let mut view = Self::new(scene, camera, LineSelection::NONE, DEFAULT_CREASE_DEG);
         edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
@@ -314,7 +313,7 @@ impl<'a> ViewedScene<'a> {
         self.drawn.binary_search_by_key(&edge, |drawn| drawn.edge).is_ok()
     }
 
-    /// Whether of a drawn edge only the parts that are outline are wanted. O(log edges).
+    /// Whether an edge is drawn only where it is outline. O(log edges).
     pub fn is_only_outline(&self, edge: u32) -> bool {
         self.only_outline.binary_search(&edge).is_ok()
     }
@@ -395,8 +394,8 @@ impl<'a> ViewedScene<'a> {
             .collect()
     }
 
-    /// Which way a face faces along one of its edges: as its triangle there, if the face is known to
-    /// be bent.
+    /// Which way a face faces along one of its edges: that of its triangle there if the face is known
+    /// to be bent.
     fn facing_along(&self, face: u32, edge: u32) -> Sign {
         if !self.scene.is_bent(face) {
             return self.facing(face);
@@ -452,7 +451,7 @@ impl<'a> ViewedScene<'a> {
     }
 }
 
-/// What tells creases and borders of materials, as far as it is asked for.
+/// What it takes to find creases and borders of materials, as far as either is wanted.
 struct Creases<'a> {
     /// Of the crease angle.
     cosine: f64,

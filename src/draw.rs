@@ -5,7 +5,7 @@ pub mod meshed;
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
-use crate::engines::edge::{Counts, Engine, Settings, outline, solve};
+use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, outline, solve};
 use crate::model::scene::Scene;
 use crate::strokes::Strokes;
 use crate::timing::{Seconds, timed};
@@ -53,7 +53,7 @@ pub struct DrawOptions {
     /// or deduplicated, and contact tolerance and shortest stroke are zero.
     pub exact: bool,
     /// The line engine.
-    pub engine: Engine,
+    pub engine: LineEngine,
     /// A triangle does not cover a segment both of whose ends lie within this distance of its
     /// plane, in model units; `None` for the default, which depends on the size of the coordinates.
     pub contact_tolerance: Option<f64>,
@@ -73,7 +73,7 @@ impl Default for DrawOptions {
             hidden: HiddenLines::default(),
             hidden_levels: None,
             exact: false,
-            engine: Engine::default(),
+            engine: LineEngine::default(),
             contact_tolerance: None,
             shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
             apart_by_kind: false,
@@ -108,7 +108,7 @@ impl DrawOptions {
 
     /// Which visible-line algorithm; all give the same drawing.
     #[must_use]
-    pub fn engine(self, engine: Engine) -> Self {
+    pub fn engine(self, engine: LineEngine) -> Self {
         Self { engine, ..self }
     }
 
@@ -118,14 +118,14 @@ impl DrawOptions {
         Self { exact: true, ..self }
     }
 
-    fn settings(&self, scene: &Scene) -> Settings {
+    fn visibility(&self, scene: &Scene) -> VisibilityOptions {
         let default = || {
             let (low, high) = scene.mesh().bounds().unwrap_or_default();
             let largest = low.abs().max(high.abs()).max_element();
             let side = (high - low).max_element();
             (largest * DEFAULT_CONTACT_TOLERANCE).max(side * LEAST_CONTACT_TOLERANCE)
         };
-        Settings {
+        VisibilityOptions {
             contact_tolerance: if self.exact {
                 0.0
             } else {
@@ -147,7 +147,7 @@ pub struct DrawOutput {
     /// How many edges and other lines of the scene were selected.
     pub n_lines: usize,
     /// How much work the engine did.
-    pub counts: Counts,
+    pub counts: LineCounts,
     /// How many decisions the floating-point filters left to exact arithmetic.
     pub n_exact: u64,
     /// Wall time of classification, visibility and strokes; the rest is zero.
@@ -168,7 +168,7 @@ pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: 
         ViewedScene::new(scene, camera, options.lines, options.crease_deg)
     });
     let (visibility, counts, engine) =
-        timed(&mut seconds.visibility, || solve(&view, options.engine, &options.settings(scene)));
+        timed(&mut seconds.visibility, || solve(&view, options.engine, &options.visibility(scene)));
     let outline = timed(&mut seconds.visibility, || {
         options.lines.has_outline().then(|| outline::find(&view))
     });

@@ -163,7 +163,7 @@ pub use camera::framing::{NamedView, View};
 pub use api::Drawing;
 pub use classify::LineSelection;
 pub use draw::{DrawOptions, HiddenLines};
-pub use engines::edge::Engine;
+pub use engines::edge::LineEngine;
 pub use shading::fill::{FillOptions, Palette};
 pub use strokes::{Stroke, StrokeKind, Strokes};
 

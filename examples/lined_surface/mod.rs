@@ -3,7 +3,7 @@
 use hiddenline::stages::camera::framing::View;
 use hiddenline::stages::draw::DEFAULT_SHORTEST_STROKE_MM;
 use hiddenline::stages::draw::meshed::{MeshedOptions, draw};
-use hiddenline::stages::engines::edge::Engine;
+use hiddenline::stages::engines::edge::LineEngine;
 use hiddenline::stages::page::{Page, PageOptions};
 use hiddenline::stages::plot::Plot;
 use hiddenline::stages::surface::{LatticeLines, LinedMesh};
@@ -22,7 +22,7 @@ pub(crate) fn lined_plot(title: &str, mesh: LinedMesh, framing: View) -> Result<
     let extent = surface.scene.extent(&camera);
     let page = Page::place(&extent, &camera, &PageOptions::default())?;
     let options = MeshedOptions {
-        engine: Engine::Auto,
+        engine: LineEngine::Auto,
         folds: true,
         border: false,
         intersections: false,

@@ -66,6 +66,10 @@ pub(super) struct Counts {
     pub(super) checksum_failures: u64,
     /// Sight lines along which all layers were counted.
     pub(super) sight_lines: u64,
+    /// Triangles of closed bodies that were not tested, since they face away from the eye.
+    pub(super) back_faces: u64,
+    /// Edges between two such triangles, hidden without a test.
+    pub(super) back_edges: u64,
     /// Pairs of triangles whose boxes touch, tested for lines of intersection.
     pub(super) intersection_pairs: u64,
     /// What the face engine counted, where areas are filled.
@@ -86,6 +90,8 @@ impl Stats {
         self.counts.fallback_edges = drawn.counts.fallback_edges;
         self.counts.checksum_failures = drawn.counts.checksum_failures;
         self.counts.sight_lines = drawn.counts.sight_lines;
+        self.counts.back_faces = drawn.counts.back_faces;
+        self.counts.back_edges = drawn.counts.back_edges;
         self.counts.exact_predicates = drawn.n_exact;
     }
 

@@ -13,7 +13,7 @@ use hiddenline::stages::axes::{Titles, axes, missing};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::chain::grid_lines::{Lines, strokes};
 use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, HiddenLines, meshed};
-use hiddenline::stages::engines::edge::Engine;
+use hiddenline::stages::engines::edge::LineEngine;
 use hiddenline::stages::engines::surface::floating_horizon::Family;
 use hiddenline::stages::engines::surface::{
     CellOrder, GridPieces, SurfaceError, SurfaceSide, floating_horizon, max_min,
@@ -290,9 +290,9 @@ fn draw_by_mesh(
 ) -> Result<Strokes, String> {
     let options = meshed::MeshedOptions {
         engine: match job.engine {
-            EngineName::Roberts => Engine::Roberts,
-            EngineName::Appel => Engine::Appel,
-            EngineName::Auto | EngineName::MaxMin | EngineName::FloatingHorizon => Engine::Auto,
+            EngineName::Roberts => LineEngine::Roberts,
+            EngineName::Appel => LineEngine::Appel,
+            EngineName::Auto | EngineName::MaxMin | EngineName::FloatingHorizon => LineEngine::Auto,
         },
         folds: job.folds,
         intersections: job.intersections,

@@ -5,7 +5,7 @@ use super::DrawOutput;
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
-use crate::engines::edge::{Counts, Engine, Settings, solve};
+use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, solve};
 use crate::engines::surface::{max_min, tin};
 use crate::engines::visibility::Visibility;
 use crate::predicates::Sign;
@@ -16,8 +16,8 @@ use crate::timing::{Seconds, timed};
 /// How a surface is drawn by a mesh engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshedOptions {
-    /// Which mesh engine; [`Engine::Auto`] first tries [`tin`].
-    pub engine: Engine,
+    /// Which mesh engine; [`LineEngine::Auto`] first tries [`tin`].
+    pub engine: LineEngine,
     /// Edges between a front and a back triangle, too. They run along sides of triangles, so a
     /// fold of a smooth surface comes out as a zigzag within one row of cells, which is as narrow
     /// as the samples are close.
@@ -49,16 +49,19 @@ pub fn draw(
 ) -> DrawOutput {
     let mut seconds = Seconds::default();
     let view = timed(&mut seconds.classify, || view(surface, camera, options));
-    let settings =
-        Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: !options.exact };
+    let settings = VisibilityOptions {
+        contact_tolerance: 0.0,
+        count_layers: false,
+        find_doubled: !options.exact,
+    };
     let mut n_exact = 0;
     let (visibility, counts, engine) = timed(&mut seconds.visibility, || {
-        let by_horizons = if options.engine == Engine::Auto { tin::solve(&view) } else { None };
+        let by_horizons = if options.engine == LineEngine::Auto { tin::solve(&view) } else { None };
         match by_horizons {
             Some((visibility, work)) => {
                 n_exact = work.exact;
                 let candidate_pairs = work.comparisons;
-                (visibility, Counts { candidate_pairs, ..Counts::default() }, max_min::NAME)
+                (visibility, LineCounts { candidate_pairs, ..LineCounts::default() }, max_min::NAME)
             }
             None => solve(&view, options.engine, &settings),
         }

@@ -26,7 +26,7 @@ pub struct Bend {
     pub triangles: [u32; 2],
 }
 
-/// The bends of all faces, face by face. A diagonal that is an edge of the mesh is none. Exact;
+/// The bends of all faces, face by face. A diagonal that is also an edge of the mesh is no bend. Exact;
 /// O(corners log corners of a face), in parallel.
 pub(crate) fn bends(
     mesh: &Mesh,

@@ -85,10 +85,10 @@ impl Scene {
         self.with_lines()
     }
 
-    /// Also finds where bent faces are folded, so that contours which run there can be drawn.
+    /// Also finds where bent faces are folded, so that silhouettes that run there can be drawn.
     ///
-    /// Edges beside bent faces then are silhouettes by the triangles along them, not by the faces'
-    /// mean normals. O(corners), in parallel.
+    /// Edges of bent faces are then silhouettes by the triangles along them, not by the faces' mean
+    /// normals. O(corners), in parallel.
     #[must_use]
     pub fn with_bends(mut self) -> Self {
         self.bends = bends(&self.mesh, &self.topology, &self.triangles, &self.triangle_faces);
@@ -209,11 +209,11 @@ impl Scene {
     }
 }
 
-/// What a cell holds, computed if it holds nothing yet.
+/// The value of a cell, computed if it is empty.
 ///
-/// Views may be drawn in parallel, and `compute` works in parallel itself. So the cell is not locked
-/// meanwhile: a thread that took over another view's work would wait for itself. Two threads may both
-/// compute the same.
+/// Views may be drawn in parallel, and `compute` runs in parallel itself. So the cell is not locked
+/// meanwhile: a thread that picks up another view's work would deadlock. Two threads may both compute
+/// the value.
 fn computed_once<T>(cell: &OnceLock<Vec<T>>, compute: impl FnOnce() -> Vec<T>) -> &[T] {
     match cell.get() {
         Some(known) => known,

@@ -1,4 +1,4 @@
-//! Points that are no input: where an edge meets the plane of a triangle.
+//! Constructed points: where an edge meets the plane of a triangle.
 //!
 //! Such a point is a ratio of polynomials in the input. It is kept as a pair of `f64` for the
 //! filters, with a bound of what is missing, and in integers for the exact path, so that decisions

@@ -193,7 +193,7 @@ impl<'a> Planes<'a> {
         match self.viewpoint {
             None => Sign::Zero,
             Some(Viewpoint::Eye(eye)) => {
-                // The eye is no vertex, so nothing is known beforehand.
+                // The eye is not a vertex, so no sign is known in advance.
                 let d = eye - plane.base;
                 let value = plane.normal.dot(d) - plane.offset;
                 let error = TRIPLE_PRODUCT_ERROR * (plane.spread.dot(d.abs()) + plane.offset);

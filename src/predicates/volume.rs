@@ -1,4 +1,4 @@
-//! Which side of a triangle's plane a point lies on, whoever looks at it.
+//! Which side of a triangle's plane a point lies on, independent of the view.
 
 use super::sight::{PlaneThrough, fits_filter};
 use super::{Sign, TRIPLE_PRODUCT_ERROR, exact};
@@ -93,6 +93,26 @@ impl<'a> Solid<'a> {
     /// The side of `x` without a plane at hand.
     pub fn side_of(&self, triangle: [u32; 3], x: u32) -> Sign {
         self.side(&self.plane(triangle), triangle, x)
+    }
+
+    /// Whether the volume that the triangles of a closed surface enclose is certainly positive, which
+    /// it is when they are wound counter-clockwise as seen from outside.
+    ///
+    /// A volume that is small for the size of the surface is not certain. O(triangles).
+    pub fn is_outward(&self, triangles: impl Iterator<Item = [u32; 3]>) -> bool {
+        let (mut volume, mut size, mut n) = (0.0, 0.0, 0.0);
+        let mut base = None;
+        for triangle in triangles {
+            let [p, q, r] = triangle.map(|corner| self.position(corner));
+            let base = *base.get_or_insert(p);
+            let plane = PlaneThrough::new(q - base, r - base, base);
+            let estimate = plane.negated_at(p);
+            volume -= estimate.value;
+            size += estimate.error / TRIPLE_PRODUCT_ERROR;
+            n += 1.0;
+        }
+        // Each term is off by its own error, and each sum of n terms by n roundings of the sizes.
+        self.in_window && volume > (2.0 * TRIPLE_PRODUCT_ERROR + n * f64::EPSILON) * size
     }
 
     #[cold]

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
-use hiddenline::stages::engines::edge::Engine;
+use hiddenline::stages::engines::edge::LineEngine;
 use hiddenline::stages::page::Dash;
 
 use crate::cli::plotting::Plotting;
@@ -122,9 +122,9 @@ impl LineArgs {
             hidden_levels: self.hidden_levels.filter(|_| hidden != HiddenLines::None),
             exact: self.exact,
             engine: match self.engine {
-                EngineName::Auto => Engine::Auto,
-                EngineName::Roberts => Engine::Roberts,
-                EngineName::Appel => Engine::Appel,
+                EngineName::Auto => LineEngine::Auto,
+                EngineName::Roberts => LineEngine::Roberts,
+                EngineName::Appel => LineEngine::Appel,
             },
             contact_tolerance: self.contact_tolerance,
             shortest_stroke_mm: self.shortest_stroke,

@@ -12,8 +12,9 @@
 //!   A        silhouette    boundary        B
 //! ```
 //!
-//! So drawn edges meet cutting edges, of which there are few, and not all triangles. Which number
-//! an edge begins with is carried over from the edges that meet it, as follows. Let `qi₀(v)` be the
+//! So drawn edges are tested against cutting edges, of which there are few, not against all
+//! triangles. The number that an edge begins with is carried over from the edges that meet it, as
+//! follows. Let `qi₀(v)` be the
 //! number of triangles that cover a vertex without touching it. A vertex is *regular* when its image
 //! lies on no nearer cutting edge's and the vertex itself on no triangle but those it is a corner
 //! of. Then `qi₀(v)` holds all around it, and an edge leaves it with `qi₀(v)` plus the triangles
@@ -34,7 +35,7 @@
 //! sight line for itself.
 //!
 //! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
-//! [`Settings::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
+//! [`VisibilityOptions::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
 //! tolerance says does not cover is taken away from the edge at last.
 //!
 //! # How the work grows
@@ -49,8 +50,8 @@
 //! | 101,760 | 152,960 | 113,959 | 51,393 | 1 | 2,108,630 |
 //! | 998,000 | 1,498,000 | 389,362 | 1,126,541 | 1 | 20,964,609 |
 //!
-//! Coherence: edge coherence. Visibility changes only where an edge passes a cutting edge or pierces a
-//! face, and is carried from edge to edge at vertices.
+//! Coherence: edge coherence. Visibility changes only where an edge passes behind a cutting edge or
+//! pierces a face, and is carried from edge to edge at vertices. Object coherence, in the indexes.
 
 mod ahead;
 mod box_join;
@@ -68,7 +69,7 @@ use super::rounding::{Place, Rounding};
 use super::segment::Segment;
 use super::shadow::{Shadow, shadow};
 use super::sweep::Sweep;
-use super::{Counts, Settings};
+use super::{LineCounts, VisibilityOptions};
 use crate::classify::ViewedScene;
 use crate::engines::visibility::Visibility;
 use crate::predicates::CutPlane;
@@ -91,18 +92,18 @@ const CHUNK: usize = 512;
 ///
 /// Expected cost: the triangles, once, for the indices; for each edge the cutting edges near its
 /// image and the triangles near it in space; and a few sight lines.
-pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
+pub fn solve(view: &ViewedScene, options: &VisibilityOptions) -> (Visibility, LineCounts) {
     let (segments, crossings) = apart(view, roberts::segments(view));
     let sides = Sides::new(view);
     let (cutting, is_even) = sides.cutting_edges(view);
     let rounding = Rounding::new(view);
     let Some(places) = Places::new(view, &rounding, &segments) else {
         // No edge is drawn, or numbers are so large that their differences are not finite.
-        return roberts::solve(view, settings);
+        return roberts::solve(view, options);
     };
     let boxes = places.of_segments(&rounding, &segments);
     let ahead = cutting_edges_ahead(view, &rounding, &places, &segments, &boxes, &cutting);
-    let tolerance = settings.contact_tolerance;
+    let tolerance = options.contact_tolerance;
     let near = near_triangles(view, &places, &segments, &boxes, tolerance);
     drop(boxes);
     let cut_by_near_plane = triangles_that_the_near_plane_cuts(view, &rounding);
@@ -112,7 +113,7 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
         near: &near,
         rounding: &rounding,
         cut_by_near_plane: &cut_by_near_plane,
-        contact_tolerance: settings.contact_tolerance,
+        contact_tolerance: options.contact_tolerance,
     };
     let mut is_end = vec![false; view.scene().mesh().positions().len()];
     for &end in segments.iter().flatten().flat_map(|segment| &segment.ends) {
@@ -139,17 +140,18 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
         starts.layers.fill(None);
     }
     let partners =
-        if settings.find_doubled { doubled::partners(view, &segments) } else { Pairs::default() };
-    let drawing = Strokes { view, settings, sides: &sides, partners: &partners, starts: &starts };
+        if options.find_doubled { doubled::partners(view, &segments) } else { Pairs::default() };
+    let builder =
+        SpanBuilder { view, options, sides: &sides, partners: &partners, starts: &starts };
     let parts: Vec<(Visibility, Vec<u32>)> = segments
         .par_chunks(CHUNK)
         .zip(&traced)
         .enumerate()
-        .map(|(i, (chunk, traced))| drawing.spans(i * CHUNK, &segments, chunk, traced))
+        .map(|(i, (chunk, traced))| builder.spans(i * CHUNK, &segments, chunk, traced))
         .collect();
 
     let mut visibility = Visibility::default();
-    let mut counts = Counts { checksum_failures: starts.n_failures, ..Counts::default() };
+    let mut counts = LineCounts { checksum_failures: starts.n_failures, ..LineCounts::default() };
     let mut failed = Vec::new();
     for ((part, without_start), traced) in parts.iter().zip(&traced) {
         visibility.append(part);
@@ -164,15 +166,15 @@ pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
         again[i as usize] = segments[i as usize];
     }
     if again.iter().any(Option::is_some) {
-        visibility = replaced_by_roberts(view, settings, &again, &visibility, &mut counts);
+        visibility = replaced_by_roberts(view, options, &again, &visibility, &mut counts);
     }
     (visibility, counts)
 }
 
-/// Edges of faces, and all other lines, each with nothing in place of the other.
+/// Splits segments into edges of faces and all other lines, each list with `None` for the rest.
 ///
-/// The ends of the latter are no vertices of a surface, or lie on one, so none could take over a
-/// count from the edges. [`roberts`] does them.
+/// Other lines end at no vertex of a surface, or on a face, so they cannot take over a count from an
+/// edge. They go to [`roberts`].
 fn apart(
     view: &ViewedScene,
     mut segments: Vec<Option<Segment>>,
@@ -381,15 +383,15 @@ fn first_layers(layers: [i32; 2], end: usize, link: &Link) -> [i32; 2] {
 }
 
 /// What is needed to turn counts into spans.
-struct Strokes<'d, 'a> {
+struct SpanBuilder<'d, 'a> {
     view: &'d ViewedScene<'a>,
-    settings: &'d Settings,
+    options: &'d VisibilityOptions,
     sides: &'d Sides<'a>,
     partners: &'d Pairs,
     starts: &'d Starts,
 }
 
-impl Strokes<'_, '_> {
+impl SpanBuilder<'_, '_> {
     /// The spans of a chunk of segments that begins with number `first`, and the numbers of those
     /// of which nothing certain is known.
     fn spans(
@@ -417,7 +419,7 @@ impl Strokes<'_, '_> {
                     self.double(segment, partner, &mut sweep);
                 }
             }
-            let spans = sweep.spans(self.view.sight(), segment, self.settings.count_layers);
+            let spans = sweep.spans(self.view.sight(), segment, self.options.count_layers);
             visibility.push(spans);
             if self.starts.layers[first + i].is_none() || sweep.lowest() < 0 {
                 failed.push((first + i) as u32);
@@ -428,7 +430,7 @@ impl Strokes<'_, '_> {
 
     /// Adds the parts of `segment` that `other` draws.
     fn double(&self, segment: &Segment, other: &Segment, sweep: &mut Sweep) {
-        let tolerance = self.settings.contact_tolerance;
+        let tolerance = self.options.contact_tolerance;
         let [p, q] = other.ends;
         for (triangle, _) in self.sides.along_edge(self.view, other.edge) {
             let (cover, border, same_depth) =
@@ -448,12 +450,12 @@ impl Strokes<'_, '_> {
 /// The same spans with those of some segments done anew.
 fn replaced_by_roberts(
     view: &ViewedScene,
-    settings: &Settings,
+    options: &VisibilityOptions,
     again: &[Option<Segment>],
     visibility: &Visibility,
-    counts: &mut Counts,
+    counts: &mut LineCounts,
 ) -> Visibility {
-    let (by_roberts, more) = roberts::solve_segments(view, settings, again);
+    let (by_roberts, more) = roberts::solve_segments(view, options, again);
     counts.candidate_pairs += more.candidate_pairs;
     let mut merged = Visibility::default();
     for (i, segment) in again.iter().enumerate() {

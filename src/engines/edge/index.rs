@@ -14,21 +14,22 @@
 //! (W. R. Franklin, SIGGRAPH 1980; see [`covered`]). Triangles and segments behind it are dropped, so
 //! that the cost does not grow with the number of layers behind a wall.
 //!
-//! Nothing here decides visibility: boxes and depths are rounded outwards, so that at worst a
-//! triangle is offered in vain.
+//! Nothing here decides visibility: boxes and depths are rounded outwards, so the worst that can
+//! happen is a test that finds nothing.
 
 mod covered;
 mod levels;
 
 use self::levels::{Level, levels};
-use super::Settings;
+use super::VisibilityOptions;
+use super::back_faces::BackFaces;
 use super::rounding::{Bounds, Place, Rounding, Separation};
 use super::segment::Segment;
 use crate::classify::ViewedScene;
 use glam::{DVec2, dvec2};
 use rayon::prelude::*;
 
-/// An item in a cell, with its box rounded outwards, so that most need not be looked up.
+/// An item in a cell, with its box rounded outwards. Most items are rejected by the box alone.
 #[derive(Debug, Clone, Copy, Default)]
 struct Entry {
     item: u32,
@@ -81,7 +82,7 @@ struct Placed {
     bounds: Bounds,
 }
 
-/// The pyramid; see the module's page.
+/// The pyramid of grids; see the module docs.
 #[derive(Debug)]
 pub(super) struct ImageIndex {
     rounding: Rounding,
@@ -94,22 +95,26 @@ pub(super) struct ImageIndex {
     entries: Vec<Entry>,
     /// Depth behind which all is hidden, for each cell of all levels; empty when layers count.
     covered_from: Vec<f64>,
-    /// Items to be offered to every segment: triangles that the near plane cuts.
+    /// Items to test against every segment: triangles that the near plane cuts.
     everywhere: Vec<u32>,
     n_items: usize,
 }
 
 impl ImageIndex {
-    /// An index of the triangles that may cover some of `segments`.
+    /// An index of the triangles that may cover some of `segments`, without `back_faces`.
     pub(super) fn new<'s>(
         view: &ViewedScene,
         segments: impl Iterator<Item = &'s Segment> + Clone,
-        settings: &Settings,
+        options: &VisibilityOptions,
+        back_faces: &BackFaces,
     ) -> Self {
         let rounding = Rounding::new(view);
-        let place = |triangle| rounding.place(view, triangle);
+        let place = |triangle| match back_faces.holds(triangle) {
+            true => Place::Nowhere,
+            false => rounding.place(view, triangle),
+        };
         let n_triangles = view.scene().triangles().len();
-        let covers = (!settings.count_layers).then_some(settings.contact_tolerance);
+        let covers = (!options.count_layers).then_some(options.contact_tolerance);
         Self::of_items(view, segments, n_triangles, covers, place)
     }
 
@@ -192,8 +197,7 @@ impl ImageIndex {
         marks
     }
 
-    /// The items that lie in a cell with a segment, in their order; notes those to be offered
-    /// everywhere.
+    /// The items that share a cell with a segment, in order; records those to test everywhere.
     fn near_segments(
         &mut self,
         marks: Option<&[f64]>,
@@ -232,7 +236,7 @@ impl ImageIndex {
         near
     }
 
-    /// Puts the items into their cells, leaving out those that are behind everything there.
+    /// Puts the items into their cells, except in cells that are covered in front of them.
     fn insert(&mut self, near: &[Vec<Placed>], marks: Option<&[f64]>) {
         let this = &*self;
         let parts: Vec<Vec<(u32, Entry)>> = near
@@ -275,7 +279,7 @@ impl ImageIndex {
     }
 
     /// The finest level whose cells are at least as large as the box; `None` for an empty box or
-    /// one beside all cells.
+    /// one outside the grid.
     fn level_of(&self, bounds: &Bounds) -> Option<usize> {
         if bounds.low.x > bounds.high.x {
             return None;

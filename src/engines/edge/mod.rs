@@ -1,11 +1,11 @@
-//! Line engines: which parts of each drawn edge are hidden, and how often.
+//! Line engines: which parts of each drawn edge are hidden, and by how many triangles.
 //!
-//! | engine | asks of an edge | cost |
+//! | engine | tests each edge against | cost |
 //! |---|---|---|
 //! | [`roberts`] | every triangle whose image is near | edges × triangles near them |
 //! | [`appel`] | contours in front, triangles near in space | edges × contours near them |
 //!
-//! All of them answer the same question with the same result, to the last interval:
+//! All engines answer the same question and find the same intervals:
 //!
 //! A triangle *covers* a point of a segment when the point's image lies in the closed image of the
 //! triangle and the triangle is strictly in front. It covers both sides of the segment, except
@@ -16,6 +16,7 @@ pub mod appel;
 pub mod outline;
 pub mod roberts;
 
+mod back_faces;
 mod index;
 mod rounding;
 mod segment;
@@ -25,9 +26,9 @@ mod sweep;
 use crate::classify::ViewedScene;
 use crate::engines::visibility::Visibility;
 
-/// Settings that every line engine obeys.
+/// Options that every line engine obeys.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Settings {
+pub struct VisibilityOptions {
     /// A triangle does not cover a segment both of whose ends lie within this distance of its
     /// plane, in model units. Zero: contact is exact.
     pub contact_tolerance: f64,
@@ -40,8 +41,8 @@ pub struct Settings {
 
 /// The line engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Engine {
-    /// Roberts for small scenes of which few edges are drawn, else Appel.
+pub enum LineEngine {
+    /// Roberts for small scenes with few drawn edges, otherwise Appel.
     #[default]
     Auto,
     /// Every edge against the triangles near its image.
@@ -57,26 +58,26 @@ pub enum Engine {
 /// Also returns which engine did it, by its name on the command line, and how much work it was.
 pub fn solve(
     view: &ViewedScene,
-    engine: Engine,
-    settings: &Settings,
-) -> (Visibility, Counts, &'static str) {
-    let engine = if engine == Engine::Auto { fastest(view) } else { engine };
+    engine: LineEngine,
+    options: &VisibilityOptions,
+) -> (Visibility, LineCounts, &'static str) {
+    let engine = if engine == LineEngine::Auto { fastest(view) } else { engine };
     let (name, (visibility, counts)) = match engine {
-        Engine::Roberts => ("roberts", roberts::solve(view, settings)),
-        Engine::Auto | Engine::Appel => ("appel", appel::solve(view, settings)),
-        Engine::AllPairs => ("all-pairs", roberts::solve_all_pairs(view, settings)),
+        LineEngine::Roberts => ("roberts", roberts::solve(view, options)),
+        LineEngine::Auto | LineEngine::Appel => ("appel", appel::solve(view, options)),
+        LineEngine::AllPairs => ("all-pairs", roberts::solve_all_pairs(view, options)),
     };
     (visibility, counts, name)
 }
 
-/// The engine that [`Engine::Auto`] stands for.
+/// The engine that [`LineEngine::Auto`] stands for.
 ///
-/// Appel, but for scenes of fewer than [`SMALL_SCENE`] triangles of which fewer edges are drawn than
-/// there are triangles: there, finding what is cut and what is near in space is most of its work.
-fn fastest(view: &ViewedScene) -> Engine {
+/// Appel, except for scenes with fewer than [`SMALL_SCENE`] triangles and fewer drawn edges than
+/// triangles: there, finding cutting edges and nearby triangles would be most of Appel's work.
+fn fastest(view: &ViewedScene) -> LineEngine {
     let n_triangles = view.scene().triangles().len();
     let is_small = n_triangles < SMALL_SCENE && view.selected().len() < n_triangles;
-    if is_small { Engine::Roberts } else { Engine::Appel }
+    if is_small { LineEngine::Roberts } else { LineEngine::Appel }
 }
 
 /// Scenes with fewer triangles are small. Measured: at 3,700 triangles Roberts takes half of Appel's
@@ -86,15 +87,19 @@ const SMALL_SCENE: usize = 1 << 14;
 
 /// How much work an engine did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct LineCounts {
     /// Pairs of an edge and a triangle (or contour edge) that were tested.
     pub candidate_pairs: u64,
     /// Pairs of an edge and a contour edge among them.
     pub contour_crossings: u64,
     /// Edges handed to [`roberts`].
     pub fallback_edges: u64,
-    /// Edges whose counts contradict others: faults of the program, always zero.
+    /// Edges whose counts contradict others. Always zero unless the program has a bug.
     pub checksum_failures: u64,
     /// Sight lines along which all layers were counted.
     pub sight_lines: u64,
+    /// Triangles that were not tested, since they face away from the eye.
+    pub back_faces: u64,
+    /// Edges between two such triangles: hidden without a test.
+    pub back_edges: u64,
 }

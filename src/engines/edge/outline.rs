@@ -1,4 +1,4 @@
-//! Outlines: the parts of edges beside which nothing of the scene is seen, only the background.
+//! Outlines: the parts of edges that are seen against the background only.
 //!
 //! ```text
 //!          ┌────────┐
@@ -8,15 +8,17 @@
 //!     └─────────┘
 //! ```
 //!
-//! Seen from the eye each point beside an edge, on its left or its right, either lies in the image of
-//! some triangle, before or behind the edge, or in that of none. Where one of the two sides lies in
-//! none the edge is *outline*. An edge needs such a side to be visible from it, so outlines are always
-//! visible, and they are found without looking at depths: the intervals and sides are those of
-//! [`roberts`](super::roberts), but every triangle covers, the edge's own ones too.
+//! In the image, a point just to the left or right of an edge either lies inside some triangle, in
+//! front of the edge or behind it, or inside none. Where one of the two sides lies inside none, the edge
+//! is *outline*. Nothing covers such a side, so outlines are always visible, and depths play no part:
+//! the intervals and sides are those of [`roberts`](super::roberts), but every triangle covers, even
+//! those that contain the edge.
 //!
-//! Only edges at which the surface can end in the image are asked: silhouette, boundary and
-//! non-manifold edges. All others have a triangle on either side, or an edge-on face whose other
-//! edges have the same image. Exact.
+//! Only silhouette, boundary, and non-manifold edges are tested, where the surface can end in the
+//! image. All others have a triangle on either side, or an edge-on face whose other edges have the
+//! same image. Exact.
+//!
+//! Coherence: object coherence, through the index over the image, as in Roberts.
 
 use super::appel::Sides;
 use super::index::{ImageIndex, Visitor};

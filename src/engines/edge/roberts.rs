@@ -13,21 +13,25 @@
 //!
 //! Differs from the paper in:
 //! * bodies need not be convex or closed: polygons are covered by their triangles;
-//! * instead of all pairs, an index over the images offers the triangles near an edge, and cells
-//!   that one triangle covers wholly drop all that lies behind it (W. R. Franklin, "A linear time
+//! * instead of all pairs, an index over the image finds the triangles near an edge, and covered
+//!   cells drop everything behind them (W. R. Franklin, "A linear time
 //!   exact hidden surface algorithm", SIGGRAPH 1980);
-//! * a line is covered on each of its two sides apart, so that symmetric views come out right.
+//! * his first step, to leave out what faces away from the eye, is taken only where it is safe (module
+//!   `back_faces`);
+//! * each side of a line is covered separately, so that symmetric views come out right.
 //!
-//! Exact, and so simple that the other engines are measured against it.
+//! Exact, and simple enough to check the other engines.
 //!
-//! Coherence: none carried from edge to edge; the index of images uses object coherence (boxes stand
-//! for faces).
+//! Coherence: object coherence, in the index over the image (boxes stand for faces) and in the first
+//! step (a body's front faces stand for its back faces); area coherence, in covered cells. Nothing is
+//! carried from one edge to the next.
 
+use super::back_faces::BackFaces;
 use super::index::{ImageIndex, Visitor};
 use super::segment::Segment;
 use super::shadow::{Shadow, Sides, shadow};
 use super::sweep::Sweep;
-use super::{Counts, Settings};
+use super::{LineCounts, VisibilityOptions};
 use crate::classify::ViewedScene;
 use crate::engines::visibility::{Span, Visibility};
 use crate::predicates::CutPlane;
@@ -41,23 +45,37 @@ const CHUNK: usize = 512;
 ///
 /// Expected cost: the triangles, once, for the index, and for each edge the triangles near its
 /// image that no single nearer triangle hides.
-pub fn solve(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
-    solve_segments(view, settings, &segments(view))
+pub fn solve(view: &ViewedScene, options: &VisibilityOptions) -> (Visibility, LineCounts) {
+    let back_faces = BackFaces::new(view, options);
+    solve_without(&back_faces, view, options, &segments(view))
 }
 
 /// Finds the spans of some segments of `view`, in their order.
 pub(super) fn solve_segments(
     view: &ViewedScene,
-    settings: &Settings,
+    options: &VisibilityOptions,
     segments: &[Option<Segment>],
-) -> (Visibility, Counts) {
-    let index = ImageIndex::new(view, segments.iter().flatten(), settings);
-    run(view, settings, segments, Some(&index))
+) -> (Visibility, LineCounts) {
+    solve_without(&BackFaces::default(), view, options, segments)
+}
+
+fn solve_without(
+    back_faces: &BackFaces,
+    view: &ViewedScene,
+    options: &VisibilityOptions,
+    segments: &[Option<Segment>],
+) -> (Visibility, LineCounts) {
+    let index = ImageIndex::new(view, segments.iter().flatten(), options, back_faces);
+    let (visibility, counts) = run(view, options, segments, Some((&index, back_faces)));
+    (visibility, LineCounts { back_faces: back_faces.n_faces(), ..counts })
 }
 
 /// Finds the same spans by testing every edge against every triangle. O(edges × triangles).
-pub fn solve_all_pairs(view: &ViewedScene, settings: &Settings) -> (Visibility, Counts) {
-    run(view, settings, &segments(view), None)
+pub fn solve_all_pairs(
+    view: &ViewedScene,
+    options: &VisibilityOptions,
+) -> (Visibility, LineCounts) {
+    run(view, options, &segments(view), None)
 }
 
 /// The drawn edges as segments.
@@ -67,22 +85,27 @@ pub(super) fn segments(view: &ViewedScene) -> Vec<Option<Segment>> {
 
 fn run(
     view: &ViewedScene,
-    settings: &Settings,
+    options: &VisibilityOptions,
     segments: &[Option<Segment>],
-    index: Option<&ImageIndex>,
-) -> (Visibility, Counts) {
+    shortcuts: Option<(&ImageIndex, &BackFaces)>,
+) -> (Visibility, LineCounts) {
+    let (index, back_faces) = shortcuts.unzip();
     let clippers: Mutex<Vec<Clipper>> = Mutex::new(Vec::new());
-    let parts: Vec<(Visibility, Counts)> = segments
+    let parts: Vec<(Visibility, LineCounts)> = segments
         .par_chunks(CHUNK)
         .map(|chunk| {
             let idle = clippers.lock().ok().and_then(|mut idle| idle.pop());
             let mut clipper = idle.unwrap_or_else(|| Clipper::new(index));
-            let mut counts = Counts::default();
+            let mut counts = LineCounts::default();
             let mut visibility = Visibility::default();
             for segment in chunk {
                 match segment {
+                    Some(segment) if back_faces.is_some_and(|faces| faces.hides(segment)) => {
+                        counts.back_edges += 1;
+                        visibility.push(&[hidden(segment)]);
+                    }
                     Some(segment) => {
-                        visibility.push(clipper.clip(view, settings, segment, index, &mut counts))
+                        visibility.push(clipper.clip(view, options, segment, index, &mut counts))
                     }
                     None => visibility.push(&[]),
                 }
@@ -94,12 +117,18 @@ fn run(
         })
         .collect();
     let mut visibility = Visibility::default();
-    let mut counts = Counts::default();
+    let mut counts = LineCounts::default();
     for (part, part_counts) in &parts {
         visibility.append(part);
         counts.candidate_pairs += part_counts.candidate_pairs;
+        counts.back_edges += part_counts.back_edges;
     }
     (visibility, counts)
+}
+
+/// All of a segment, hidden.
+fn hidden(segment: &Segment) -> Span {
+    Span { t0: segment.from.t, t1: segment.to.t, qi: 1, doubled: false }
 }
 
 /// Work space of one thread.
@@ -116,16 +145,16 @@ impl Clipper {
     fn clip(
         &mut self,
         view: &ViewedScene,
-        settings: &Settings,
+        options: &VisibilityOptions,
         segment: &Segment,
         index: Option<&ImageIndex>,
-        counts: &mut Counts,
+        counts: &mut LineCounts,
     ) -> &[Span] {
         let sweep = &mut self.sweep;
         sweep.clear();
         let mut test = |triangle| {
             counts.candidate_pairs += 1;
-            clip_by(view, settings, segment, triangle, sweep)
+            clip_by(view, options, segment, triangle, sweep)
         };
         let wholly_hidden = match index {
             Some(index) => {
@@ -134,24 +163,23 @@ impl Clipper {
             None => (0..view.scene().triangles().len() as u32).any(test),
         };
         if wholly_hidden {
-            let span = Span { t0: segment.from.t, t1: segment.to.t, qi: 1, doubled: false };
-            return sweep.only(span);
+            return sweep.only(hidden(segment));
         }
-        sweep.spans(view.sight(), segment, settings.count_layers)
+        sweep.spans(view.sight(), segment, options.count_layers)
     }
 }
 
-/// Adds what one triangle does to a segment; true when it hides the whole of it and that is all
-/// that is asked.
+/// Adds the effect of one triangle on a segment; true when it hides all of the segment and layers
+/// are not counted.
 fn clip_by(
     view: &ViewedScene,
-    settings: &Settings,
+    options: &VisibilityOptions,
     segment: &Segment,
     triangle: u32,
     sweep: &mut Sweep,
 ) -> bool {
     let (cover, border) =
-        match shadow(view, segment, triangle, settings.contact_tolerance, settings.find_doubled) {
+        match shadow(view, segment, triangle, options.contact_tolerance, options.find_doubled) {
             None => return false,
             Some(Shadow::Covers(cover)) => (Some(cover), None),
             Some(Shadow::AlongBorder(cover, border)) => (Some(cover), Some((cover, border, false))),
@@ -167,7 +195,7 @@ fn clip_by(
     }
     let Some(cover) = cover else { return false };
     let is_whole = |plane| plane == CutPlane::End || plane == CutPlane::Near;
-    if !settings.count_layers
+    if !options.count_layers
         && cover.sides == Sides::Both
         && is_whole(cover.from.plane)
         && is_whole(cover.to.plane)

@@ -1,6 +1,6 @@
 //! Boxes in the image, rounded outwards, and a quick test for what lies to one side of a segment.
 //!
-//! Nothing here decides visibility: whatever is in doubt counts as near.
+//! Nothing here decides visibility: in doubt, an item counts as near.
 
 use super::segment::Segment;
 use crate::camera::ImagePoint;
@@ -56,15 +56,15 @@ impl Bounds {
 /// Where an item goes in an index.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
-    /// It is of no interest.
+    /// It can be ignored.
     Nowhere,
-    /// It is offered to every segment by other means: see [`ImageIndex::everywhere`].
+    /// It is tested against every segment: see [`ImageIndex::everywhere`].
     Everywhere,
     /// Into the cells that its box touches.
     Within(Bounds),
 }
 
-/// Everything about the view that rounding outwards needs.
+/// The error bounds of a view.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rounding {
     /// In orthographic projection the error does not depend on the place.
@@ -90,7 +90,7 @@ impl Rounding {
         self.depth_error
     }
 
-    /// Whether images reach infinitely far: in perspective, near the eye's plane.
+    /// Whether images are unbounded, as they are in perspective near the eye's plane.
     pub(super) fn is_unbounded(&self) -> bool {
         self.flat_error.is_none()
     }

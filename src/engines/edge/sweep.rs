@@ -26,7 +26,7 @@ struct Event {
 }
 
 impl Sweep {
-    /// Forgets everything collected.
+    /// Removes everything collected.
     pub(super) fn clear(&mut self) {
         self.start = [0; 3];
         self.events.clear();
@@ -37,7 +37,7 @@ impl Sweep {
         self.lowest
     }
 
-    /// Lets so many layers lie on the left and right of where the segment begins.
+    /// Sets the numbers of layers on the left and right at the segment's start.
     pub(super) fn start_with(&mut self, [left, right]: [i32; 2]) {
         self.start = [left, right, 0];
     }
@@ -53,7 +53,7 @@ impl Sweep {
         self.add(cover, [left, right, 0]);
     }
 
-    /// Adds a part that another edge draws.
+    /// Adds a part that a coincident, nearer edge draws.
     pub(super) fn add_doubled(&mut self, cover: &Cover) {
         self.add(cover, [0, 0, 1]);
     }
@@ -63,7 +63,7 @@ impl Sweep {
         self.events.push(Event { at: cover.to, change: change.map(|x| -x) });
     }
 
-    /// The same span and no other, for a segment of which nothing more need be known.
+    /// A single span, for a segment that needs no sweep.
     pub(super) fn only(&mut self, span: Span) -> &[Span] {
         self.spans.clear();
         self.spans.push(span);

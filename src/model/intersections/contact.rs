@@ -23,8 +23,8 @@ enum Site {
     Diagonal([u32; 2], [u32; 2]),
 }
 
-/// Leaves out pieces along edges where faces touch but do not cross, and all but one of those that
-/// tell of the same crossing.
+/// Leaves out pieces along edges where faces touch but do not cross, and keeps one piece for each
+/// crossing.
 pub(super) fn crossings(pieces: Vec<Piece>, solid: &Solid) -> Vec<Piece> {
     let (doubtful, mut kept): (Vec<Piece>, Vec<Piece>) =
         pieces.into_iter().partition(|piece| piece.along != [None; 2]);

@@ -1,7 +1,7 @@
-//! Which sides of triangles are no edges, but diagonals of the faces that they are parts of.
+//! Which sides of triangles are not edges but diagonals of their faces.
 //!
-//! Triangles that share an edge do not cross there. But where the edge of some faces happens to be a
-//! diagonal of another one, as vertices go, the faces may, and how a face is cut must not matter.
+//! Triangles that share an edge do not cross there. But where an edge of one face joins the same
+//! vertices as a diagonal of another, the faces may cross, however they are triangulated.
 
 use crate::model::mesh::Mesh;
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ pub(super) struct Diagonals<'a> {
 }
 
 impl<'a> Diagonals<'a> {
-    /// Finds the sides that two triangles of one face have in common, but are no edges of it.
+    /// Finds the sides that two triangles of a face share and that are not edges of it.
     /// O(corners log corners of a face), in parallel.
     pub(super) fn new(mesh: &Mesh, triangles: &[[u32; 3]], faces: &'a [u32]) -> Self {
         if triangles.len() == mesh.n_faces() {
@@ -41,7 +41,7 @@ impl<'a> Diagonals<'a> {
         Self { faces, sides: of_faces.concat() }
     }
 
-    /// Whether there is none.
+    /// Whether there are no diagonals.
     pub(super) fn is_empty(&self) -> bool {
         self.sides.is_empty()
     }

@@ -116,15 +116,15 @@ fn planes(pieces: &[Piece], solid: &Solid, triangles: &[[u32; 3]]) -> Vec<u32> {
     plane_of
 }
 
-/// The name of a triangle's plane, with the way to it made short.
-fn root(plane_of: &mut [u32], triangle: u32) -> u32 {
+/// The root of a triangle's set in a forest of disjoint sets; compresses the path to it.
+pub(super) fn root(parents: &mut [u32], triangle: u32) -> u32 {
     let mut last = triangle;
-    while plane_of[last as usize] != last {
-        last = plane_of[last as usize];
+    while parents[last as usize] != last {
+        last = parents[last as usize];
     }
     let mut next = triangle;
     while next != last {
-        next = std::mem::replace(&mut plane_of[next as usize], last);
+        next = std::mem::replace(&mut parents[next as usize], last);
     }
     last
 }

@@ -1,4 +1,4 @@
-//! Where faces pierce each other: lines that are no edges of the mesh, found once for all views.
+//! Where faces pierce each other: lines that are not edges of the mesh, found once for all views.
 //!
 //! ```text
 //!   triangles ─► tree ─────────► pair ─────────────► contact ───────► lines
@@ -13,9 +13,8 @@
 //!
 //! # What is exact
 //!
-//! Everything that is decided: which triangles cross, where each line ends, what lies in one plane,
-//! and later what hides it, since ends that are no vertices stay unrounded in
-//! [`PiercePoint`]. Only the drawn ends are rounded, to within four units in the last place of
+//! All decisions: which triangles cross, where each line ends, what is coplanar, and later what hides
+//! it, since ends that are not vertices stay unrounded in [`PiercePoint`]. Only the drawn ends are rounded, to within four units in the last place of
 //! each coordinate in space.
 //!
 //! # Cost
@@ -29,15 +28,18 @@
 //! Guigue and O. Devillers, "Fast and robust triangle-triangle overlap test using orientation
 //! predicates", 2003) in that ends are compared by what makes them, never by their place.
 
+mod bodies;
 mod contact;
 mod diagonals;
 mod lines;
 mod pair;
+mod touch;
 mod tree;
 
 use crate::model::mesh::Mesh;
 use crate::model::topology::Topology;
 use crate::predicates::{PiercePoint, Solid};
+use bodies::Surfaces;
 use diagonals::Diagonals;
 use pair::{Piece, Prepared};
 use tree::BoxTree;
@@ -68,6 +70,7 @@ pub struct Intersections {
     points: Vec<PiercePoint>,
     plane_of: Vec<u32>,
     n_pairs: u64,
+    in_bodies: Vec<bool>,
 }
 
 impl Intersections {
@@ -78,22 +81,35 @@ impl Intersections {
         let diagonals = Diagonals::new(mesh, triangles, faces);
         let solid = Solid::new(mesh.positions());
         let tree = BoxTree::new(mesh.positions(), triangles, (0..triangles.len() as u32).collect());
+        let surfaces = Surfaces::new(mesh, triangles, topology);
         let found: Vec<Found> = tree.touching_pairs(
             |triangle| Prepared::new(&solid, triangles[triangle as usize]),
             |found: &mut Found, prepared, a, b| {
                 found.n_pairs += 1;
-                if !pair::are_apart(&solid, &diagonals, prepared, triangles[b as usize])
+                let corners = triangles[b as usize];
+                let share_a_side = pair::share_a_side(prepared, corners);
+                let are_apart = pair::are_apart(&solid, &diagonals, prepared, corners);
+                if !are_apart
                     && let Some(piece) = pair::piece(&solid, triangles, &diagonals, [a, b])
                 {
                     found.pieces.push(piece);
+                }
+                if (!are_apart || share_a_side)
+                    && let Some(surface) = surfaces.common([a, b])
+                    && found.touched.last() != Some(&surface)
+                    && touch::touch(&solid, triangles, [a, b])
+                {
+                    found.touched.push(surface);
                 }
             },
         );
         drop(tree);
         let n_pairs = found.iter().map(|found| found.n_pairs).sum();
+        let touched = found.iter().flat_map(|found| found.touched.iter().copied());
+        let in_bodies = surfaces.in_bodies(touched, &solid, triangles);
         let pieces = found.into_iter().flat_map(|found| found.pieces).collect();
         let pieces = contact::crossings(pieces, &solid);
-        Self { n_pairs, ..lines::joined(pieces, &solid, triangles, topology) }
+        Self { n_pairs, in_bodies, ..lines::joined(pieces, &solid, triangles, topology) }
     }
 
     /// The lines, in a fixed order.
@@ -101,9 +117,15 @@ impl Intersections {
         &self.lines
     }
 
-    /// Their ends that are no vertices.
+    /// The ends of lines that are not vertices.
     pub fn points(&self) -> &[PiercePoint] {
         &self.points
+    }
+
+    /// For each triangle whether it is part of a body: a connected closed surface, wound outward,
+    /// that meets itself nowhere. Empty when there is no body.
+    pub fn in_bodies(&self) -> &[bool] {
+        &self.in_bodies
     }
 
     /// How many pairs of triangles had boxes that touch.
@@ -111,9 +133,9 @@ impl Intersections {
         self.n_pairs
     }
 
-    /// Whether it is known at once that a triangle lies in one of the two planes of a line.
+    /// Whether a triangle is known to lie in one of the two planes of a line.
     ///
-    /// True for the triangles that cross there; others in these planes may not be known.
+    /// True for the triangles that cross there; others in these planes may be missed.
     #[inline]
     pub fn is_in_plane_of(&self, line: &Intersection, triangle: u32) -> bool {
         let plane = self.plane_of[triangle as usize];
@@ -125,5 +147,7 @@ impl Intersections {
 #[derive(Default)]
 struct Found {
     pieces: Vec<Piece>,
+    /// Closed surfaces that meet themselves.
+    touched: Vec<u32>,
     n_pairs: u64,
 }

@@ -28,7 +28,7 @@ pub(super) enum End {
     Inside([u32; 2], u32),
 }
 
-/// How to construct an end that is no vertex: where a side meets the plane of a triangle.
+/// How to construct an end that is not a vertex: where a side meets the plane of a triangle.
 pub(super) type Site = ([u32; 2], u32);
 
 /// What two triangles that are not in one plane have in common.
@@ -71,7 +71,7 @@ enum Location {
     AtCorner(u32),
 }
 
-/// A triangle with what is asked of it again and again.
+/// A triangle with its points and plane at hand.
 #[derive(Debug)]
 pub(super) struct Prepared {
     corners: [u32; 3],
@@ -89,13 +89,19 @@ impl Prepared {
 
 /// Which corners of `own` are corners of `other`, too: bit k stands for corner k.
 #[inline]
-fn shared(own: [u32; 3], [p, q, r]: [u32; 3]) -> u32 {
+pub(super) fn shared(own: [u32; 3], [p, q, r]: [u32; 3]) -> u32 {
     let [a, b, c] = own.map(|x| u32::from((x == p) | (x == q) | (x == r)));
     a | b << 1 | c << 2
 }
 
-/// Whether it is certain that two triangles share no line, as far as can be seen without exact
-/// arithmetic. Nearly all pairs of neighbors in a mesh end here, so it takes no detours.
+/// Whether two triangles have a side in common.
+#[inline]
+pub(super) fn share_a_side(a: &Prepared, corners: [u32; 3]) -> bool {
+    shared(a.corners, corners).count_ones() >= 2
+}
+
+/// Whether two triangles certainly share no line, as far as floating point can tell. Nearly all pairs
+/// of neighbors in a mesh end here, so speed matters.
 #[inline]
 pub(super) fn are_apart(
     solid: &Solid,
@@ -277,7 +283,7 @@ fn along(corners: [u32; 3], signs: [Sign; 3]) -> Option<Along> {
 }
 
 /// Calls `f` with the ends of triangle `k`'s part of the line that lie in the other triangle.
-fn for_ends(
+pub(super) fn for_ends(
     solid: &Solid,
     numbers: [u32; 2],
     corners: [[u32; 3]; 2],

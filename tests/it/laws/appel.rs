@@ -6,13 +6,13 @@ use crate::scenes::{number_of_scenes, random};
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::visibility::Span;
 use hiddenline::stages::model::scene::Scene;
 
 /// Spans as a drawing shows them: without those that rounding leaves next to nothing of, and
 /// without telling hidden parts apart by who else draws them when layers do not count.
-fn as_drawn(spans: &[Span], settings: &Settings) -> Vec<Span> {
+fn as_drawn(spans: &[Span], settings: &VisibilityOptions) -> Vec<Span> {
     let mut drawn: Vec<Span> = Vec::new();
     for span in spans {
         let mut span = *span;
@@ -37,9 +37,9 @@ fn is_same(a: &[Span], b: &[Span]) -> bool {
 }
 
 /// How many edges there are and how many of them were given to Roberts.
-fn assert_equal(name: &str, view: &ViewedScene, settings: &Settings) -> (usize, u64) {
-    let (expected, _, _) = solve(view, Engine::Roberts, settings);
-    let (found, counts, engine) = solve(view, Engine::Appel, settings);
+fn assert_equal(name: &str, view: &ViewedScene, settings: &VisibilityOptions) -> (usize, u64) {
+    let (expected, _, _) = solve(view, LineEngine::Roberts, settings);
+    let (found, counts, engine) = solve(view, LineEngine::Appel, settings);
     assert_eq!(engine, "appel");
     assert_eq!(counts.checksum_failures, 0, "{name}");
     assert_eq!(found.len(), expected.len(), "{name}");
@@ -65,7 +65,8 @@ fn lines_drawn_twice_are_found_as_roberts_finds_them() {
             for (contact_tolerance, count_layers) in
                 [(0.0, true), (0.0, false), (0.3, true), (1e-6, false)]
             {
-                let settings = Settings { contact_tolerance, count_layers, find_doubled: true };
+                let settings =
+                    VisibilityOptions { contact_tolerance, count_layers, find_doubled: true };
                 assert_equal(&scene.name, &view, &settings);
             }
         }
@@ -116,11 +117,15 @@ fn models_are_drawn_as_roberts_draws_them() {
             for (lines, settings) in [
                 (
                     LineSelection::all_edges(),
-                    Settings { contact_tolerance: 0.0, count_layers: true, find_doubled: false },
+                    VisibilityOptions {
+                        contact_tolerance: 0.0,
+                        count_layers: true,
+                        find_doubled: false,
+                    },
                 ),
                 (
                     LineSelection::default(),
-                    Settings {
+                    VisibilityOptions {
                         contact_tolerance: size
                             * hiddenline::stages::draw::DEFAULT_CONTACT_TOLERANCE,
                         count_layers: false,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
-use hiddenline::stages::engines::edge::{Engine, Settings, outline, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, outline, solve};
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::strokes::StrokeKind;
@@ -40,11 +40,12 @@ fn split(scene: &Scene) -> Scene {
 /// Where each drawn line is seen, by the bits of its ends, and where it is outline.
 type Picture = BTreeMap<[[u64; 3]; 2], (StrokeKind, Vec<[u64; 2]>, Vec<[u64; 2]>)>;
 
-fn picture(scene: &Scene, camera: &Camera, engine: Engine) -> Picture {
+fn picture(scene: &Scene, camera: &Camera, engine: LineEngine) -> Picture {
     let lines =
         LineSelection::NONE.with(StrokeKind::Silhouette).with(StrokeKind::Boundary).with_outline();
     let view = ViewedScene::new(scene, camera, lines, 30.0);
-    let settings = Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let settings =
+        VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
     let (visibility, _, _) = solve(&view, engine, &settings);
     let outline = outline::find(&view);
     let mut picture = Picture::new();
@@ -74,7 +75,7 @@ fn bent_faces_are_drawn_as_their_triangles_are() {
             _ => Projection::Perspective { fov_deg: 40.0, near: 1e-6 },
         };
         let Ok(camera) = Camera::new(eye, target, DVec3::Z, projection) else { continue };
-        for engine in [Engine::Roberts, Engine::Appel] {
+        for engine in [LineEngine::Roberts, LineEngine::Appel] {
             let expected = picture(&triangles, &camera, engine);
             let found = picture(&scene, &camera, engine);
             assert_eq!(found, expected, "scene {seed}, {engine:?}");

@@ -4,10 +4,10 @@ use crate::laws::engines::{all_pairs, appel, camera, mesh, roberts};
 use crate::oracle::compare::{compare, truth_of};
 use crate::scenes::{Model, P, Rng, Scene as TestScene, orthographic, perspective};
 use glam::{DVec3, dvec3};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
 
 fn assert_as_the_truth_says(scene: &TestScene) {
     let edges = truth_of(scene).unwrap();
@@ -70,9 +70,10 @@ fn level_lines_drawn_twice_are_found_whichever_way_rounding_tilts_them() {
         let test = model.seen_by(format!("seed {seed}"), orthographic(forward, [0.0, 0.0, 1.0]));
         let scene = Scene::new(mesh(&test));
         let view = ViewedScene::new(&scene, &camera(&test), LineSelection::all_edges(), 30.0);
-        let settings = Settings { contact_tolerance: 0.0, count_layers: true, find_doubled: true };
-        let (expected, _, _) = solve(&view, Engine::AllPairs, &settings);
-        let (found, _, _) = solve(&view, Engine::Appel, &settings);
+        let settings =
+            VisibilityOptions { contact_tolerance: 0.0, count_layers: true, find_doubled: true };
+        let (expected, _, _) = solve(&view, LineEngine::AllPairs, &settings);
+        let (found, _, _) = solve(&view, LineEngine::Appel, &settings);
         for i in 0..found.len() {
             let [a, b] = [&expected, &found].map(|v| {
                 let long = v.spans(i).iter().filter(|s| s.t1 - s.t0 > 1e-12);

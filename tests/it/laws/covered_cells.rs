@@ -5,15 +5,15 @@
 
 use crate::scenes::{Rng, number_of_scenes};
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, DEFAULT_NEAR, Projection};
-use hiddenline::classify::{LineSelection, ViewedScene};
-use hiddenline::engines::edge::{Engine, Settings, solve};
-use hiddenline::engines::visibility::Visibility;
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
+use hiddenline::stages::engines::visibility::Visibility;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
 
-const VISIBLE_ONLY: Settings =
-    Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+const VISIBLE_ONLY: VisibilityOptions =
+    VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
 
 /// Faces in a frame of their own: x to the right, y away from the eye, z up.
 #[derive(Default)]
@@ -79,10 +79,10 @@ fn looking(from: DVec3, projection: Projection) -> Camera {
     Camera::new(from, dvec3(4.0, 0.0, 4.0), DVec3::Z, projection).unwrap()
 }
 
-fn pairs_per_edge(scene: &Scene, camera: &Camera, settings: &Settings) -> f64 {
+fn pairs_per_edge(scene: &Scene, camera: &Camera, settings: &VisibilityOptions) -> f64 {
     let view = ViewedScene::new(scene, camera, LineSelection::all_edges(), 30.0);
-    let (_, counts, _) = solve(&view, Engine::Roberts, settings);
-    counts.candidate_pairs as f64 / view.drawn().len() as f64
+    let (_, counts, _) = solve(&view, LineEngine::Roberts, settings);
+    counts.candidate_pairs as f64 / view.selected().len() as f64
 }
 
 #[test]
@@ -91,9 +91,9 @@ fn layers_behind_a_wall_cost_nothing() {
     let perspective = Projection::Perspective { fov_deg: 30.0, near: DEFAULT_NEAR };
     let leaning = |p: DVec3| dvec3(p.x, p.y + 0.5 * p.z - 0.25 * p.x, p.z);
     let straight = |p: DVec3| p;
-    let with = |contact_tolerance| Settings { contact_tolerance, ..VISIBLE_ONLY };
+    let with = |contact_tolerance| VisibilityOptions { contact_tolerance, ..VISIBLE_ONLY };
     type Place = fn(DVec3) -> DVec3;
-    let cases: [(&str, Place, Camera, Settings); 6] = [
+    let cases: [(&str, Place, Camera, VisibilityOptions); 6] = [
         ("parallel", straight, looking(front, Projection::Orthographic), with(0.0)),
         ("perspective", straight, looking(front, perspective), with(0.0)),
         ("slanted", leaning, looking(front, Projection::Orthographic), with(0.0)),
@@ -157,7 +157,12 @@ fn rubble(rng: &mut Rng) -> Scene {
 }
 
 /// Compares the parts of each edge that `told` tells apart by their `qi`.
-fn assert_same(name: &str, expected: &Visibility, found: &Visibility, told: impl Fn(u32) -> u32) {
+pub(crate) fn assert_same(
+    name: &str,
+    expected: &Visibility,
+    found: &Visibility,
+    told: impl Fn(u32) -> u32,
+) {
     assert_eq!(expected.len(), found.len(), "{name}");
     for i in 0..found.len() {
         let [a, b] = [expected, found].map(|visibility| {
@@ -195,23 +200,45 @@ fn nothing_that_shows_is_left_out_behind_walls() {
             looking(from, rng.pick(&[Projection::Orthographic, perspective]))
         };
         let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
-        let every = view.drawn().iter().copied().step_by(32).collect();
+        let every = view.selected().iter().copied().step_by(32).collect();
         let few = ViewedScene::with_edges(&scene, &camera, every);
         for contact_tolerance in [0.0, rng.pick(&[0.3, 2.0])] {
-            let settings = Settings { contact_tolerance, ..VISIBLE_ONLY };
-            let counted = Settings { count_layers: true, ..settings };
+            let settings = VisibilityOptions { contact_tolerance, ..VISIBLE_ONLY };
+            let counted = VisibilityOptions { count_layers: true, ..settings };
             let name = format!("seed {seed}, tolerance {contact_tolerance}");
-            let (expected, _, _) = solve(&view, Engine::AllPairs, &counted);
-            let (found, all, _) = solve(&view, Engine::Roberts, &counted);
+            let (expected, _, _) = solve(&view, LineEngine::AllPairs, &counted);
+            let (found, all, _) = solve(&view, LineEngine::Roberts, &counted);
             assert_same(&name, &expected, &found, |qi| qi);
-            let (found, kept, _) = solve(&view, Engine::Roberts, &settings);
+            let (found, kept, _) = solve(&view, LineEngine::Roberts, &settings);
             assert_same(&name, &expected, &found, |qi| qi.min(1));
-            let (found, _, _) = solve(&few, Engine::Roberts, &settings);
-            let (expected, _, _) = solve(&few, Engine::AllPairs, &settings);
+            let (found, _, _) = solve(&few, LineEngine::Roberts, &settings);
+            let (expected, _, _) = solve(&few, LineEngine::AllPairs, &settings);
             assert_same(&format!("{name}, few edges"), &expected, &found, |qi| qi);
             n_thinned += u64::from(2 * kept.candidate_pairs < all.candidate_pairs);
         }
     }
     eprintln!("{n_thinned} of {n_scenes} scenes, each twice, lost half of their pairs or more");
     assert!(n_thinned > n_scenes / 8);
+}
+
+#[test]
+fn what_lies_far_out_is_not_behind_a_wall_in_a_border_cell() {
+    // Cells end at an image coordinate of about 8; what lies further out is filed in the last ones. The
+    // wall covers one of these. Beyond the wall's end one triangle hides the other.
+    let mut builder = Builder::default();
+    let rectangle = |low: f64, high: f64, depth: f64, half: f64| {
+        [(low, -half), (high, -half), (high, half), (low, half)].map(|(x, z)| dvec3(x, depth, z))
+    };
+    builder.face(&rectangle(-12.5, 12.5, 1.0, 3.0));
+    builder.face(&rectangle(26.0, 30.0, 2.0, 1.0));
+    builder.face(&rectangle(41.0, 43.0, 3.0, 0.5));
+    let scene = builder.scene(|p| p);
+    let projection = Projection::Perspective { fov_deg: 30.0, near: DEFAULT_NEAR };
+    let camera = Camera::new(DVec3::ZERO, DVec3::Y, DVec3::Z, projection).unwrap();
+    let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
+    let (expected, _, _) = solve(&view, LineEngine::AllPairs, &VISIBLE_ONLY);
+    let (found, _, _) = solve(&view, LineEngine::Roberts, &VISIBLE_ONLY);
+    assert_same("far out", &expected, &found, |qi| qi);
+    let n_hidden = (0..found.len()).filter(|&i| found.spans(i)[0].qi > 0).count();
+    assert_eq!(n_hidden, 4);
 }

@@ -7,7 +7,7 @@ use crate::scenes::{Scene as TestScene, number_of_scenes, random};
 use glam::DVec3;
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::strokes::StrokeKind;
@@ -35,9 +35,9 @@ pub(crate) fn camera(scene: &TestScene) -> Camera {
 /// The drawn edges of a scene with their kinds.
 pub(crate) fn solve_with(
     scene: &TestScene,
-    engine: Engine,
+    engine: LineEngine,
     lines: LineSelection,
-    settings: &Settings,
+    settings: &VisibilityOptions,
 ) -> Vec<(StrokeKind, EngineEdge)> {
     let built = Scene::new(mesh(scene));
     let view = ViewedScene::new(&built, &camera(scene), lines, 30.0);
@@ -63,10 +63,10 @@ pub(crate) fn solve_with(
         .collect()
 }
 
-const COUNTED: Settings =
-    Settings { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
+const COUNTED: VisibilityOptions =
+    VisibilityOptions { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
 
-fn all_edges(scene: &TestScene, engine: Engine) -> Option<Vec<EngineEdge>> {
+fn all_edges(scene: &TestScene, engine: LineEngine) -> Option<Vec<EngineEdge>> {
     let drawn = solve_with(scene, engine, LineSelection::all_edges(), &COUNTED);
     Some(drawn.into_iter().map(|(_, edge)| edge).collect())
 }
@@ -77,17 +77,17 @@ pub(crate) const ALL: [(&str, Solve); 3] =
 
 /// Roberts with its index over the image.
 pub(crate) fn roberts(scene: &TestScene) -> Option<Vec<EngineEdge>> {
-    all_edges(scene, Engine::Roberts)
+    all_edges(scene, LineEngine::Roberts)
 }
 
 /// Roberts with all pairs.
 pub(crate) fn all_pairs(scene: &TestScene) -> Option<Vec<EngineEdge>> {
-    all_edges(scene, Engine::AllPairs)
+    all_edges(scene, LineEngine::AllPairs)
 }
 
 /// Appel's quantitative invisibility.
 pub(crate) fn appel(scene: &TestScene) -> Option<Vec<EngineEdge>> {
-    all_edges(scene, Engine::Appel)
+    all_edges(scene, LineEngine::Appel)
 }
 
 /// Compares `n` random scenes and reports the smallest that differs.
@@ -176,8 +176,8 @@ fn drawings_hide_as_the_truth_says_without_counting() {
         for edge in &mut flat {
             edge.pieces.iter_mut().for_each(|p| p.qi = p.qi.min(1));
         }
-        let settings = Settings { find_doubled: true, ..Settings::default() };
-        for engine in [Engine::Roberts, Engine::Appel] {
+        let settings = VisibilityOptions { find_doubled: true, ..VisibilityOptions::default() };
+        for engine in [LineEngine::Roberts, LineEngine::Appel] {
             let drawn = solve_with(scene, engine, LineSelection::all_edges(), &settings);
             let mut spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
             for span in spans.iter_mut().flat_map(|e| &mut e.spans) {
@@ -192,14 +192,14 @@ fn drawings_hide_as_the_truth_says_without_counting() {
 #[test]
 fn contact_within_the_tolerance_hides_nothing() {
     for tolerance in [1e-9, 0.5, 1.0] {
-        let settings = Settings { contact_tolerance: tolerance, ..COUNTED };
+        let settings = VisibilityOptions { contact_tolerance: tolerance, ..COUNTED };
         for seed in 30_000..30_000 + number_of_scenes(400) {
             let scene = random(seed);
             let of_truth = TruthSettings { contact_tolerance: tolerance, ..Default::default() };
             let Ok(edges) = truth(&scene.positions, &scene.faces, &scene.sight, of_truth) else {
                 continue;
             };
-            for engine in [Engine::Roberts, Engine::Appel] {
+            for engine in [LineEngine::Roberts, LineEngine::Appel] {
                 let drawn = solve_with(&scene, engine, LineSelection::all_edges(), &settings);
                 let spans: Vec<EngineEdge> = drawn.into_iter().map(|(_, edge)| edge).collect();
                 compare(&scene.sight, &edges, &spans).unwrap_or_else(|e| {
@@ -231,7 +231,7 @@ fn edges_are_of_the_kind_the_truth_says_and_selected_by_any() {
     assert_truth(40_000, 2000, |scene, edges| {
         for selection in &selections {
             let lines = selection.iter().fold(LineSelection::NONE, |l, &k| l.with(name(k)));
-            let drawn = solve_with(scene, Engine::Roberts, lines, &COUNTED);
+            let drawn = solve_with(scene, LineEngine::Roberts, lines, &COUNTED);
             for edge in edges.iter().filter(|e| !e.pieces.is_empty()) {
                 let Some(kinds) = edge.kinds(30.0) else {
                     continue;

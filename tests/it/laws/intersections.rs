@@ -11,7 +11,7 @@ use crate::scenes::{
 use glam::DVec3;
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
 use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::strokes::StrokeKind;
 
@@ -132,7 +132,7 @@ fn crossing_boxes_are_drawn_in_full_length_from_everywhere() {
         let scene = TestScene { sight, ..boxes.clone() };
         let built = built(&scene);
         let camera = camera(&scene);
-        for (engine, exact) in [(Engine::Roberts, true), (Engine::Appel, false)] {
+        for (engine, exact) in [(LineEngine::Roberts, true), (LineEngine::Appel, false)] {
             let options = DrawOptions {
                 lines: INTERSECTIONS,
                 hidden: HiddenLines::Solid,
@@ -182,9 +182,9 @@ fn lines_of_intersection_are_those_of_the_truth() {
 }
 
 /// The lines as an engine sees them, and as the truth does.
-fn seen(scene: &TestScene, built: &Scene, engine: Engine) -> Vec<EngineEdge> {
+fn seen(scene: &TestScene, built: &Scene, engine: LineEngine) -> Vec<EngineEdge> {
     let view = ViewedScene::new(built, &camera(scene), INTERSECTIONS, 30.0);
-    let settings = Settings { count_layers: true, ..Settings::default() };
+    let settings = VisibilityOptions { count_layers: true, ..VisibilityOptions::default() };
     let (visibility, counts, _) = solve(&view, engine, &settings);
     assert_eq!(counts.checksum_failures, 0);
     let drawn = view.selected().iter().enumerate();
@@ -231,7 +231,7 @@ fn lines_of_intersection_are_hidden_as_the_truth_says() {
         let scene = random(seed);
         let built = built(&scene);
         let mut all = lines(&built);
-        let engines = [Engine::Roberts, Engine::Appel, Engine::AllPairs];
+        let engines = [LineEngine::Roberts, LineEngine::Appel, LineEngine::AllPairs];
         let mut seen = engines.map(|engine| seen(&scene, &built, engine));
         assert_eq!(seen[0].len(), seen[1].len());
         // Three planes may meet in one line; it is then there several times.

@@ -2,6 +2,7 @@
 
 // Lines of meshes.
 mod appel;
+mod back_faces;
 mod bends;
 mod closed_forms;
 mod coincidences;

@@ -6,9 +6,9 @@ use crate::oracle::exact::{
 };
 use crate::scenes::Rng;
 use glam::{DVec3, dvec3};
-use hiddenline::camera::{Camera, DEFAULT_NEAR, Projection};
-use hiddenline::predicates::{
-    Corner, Estimate, PiercePoint, Place, PlaneName, Planes, Sight, Sign, Solid,
+use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
+use hiddenline::stages::predicates::{
+    Corner, CutPlane, Estimate, PiercePoint, Place, PlaneName, Planes, Sight, Sign, Solid,
 };
 
 /// A number from −1 to 1 with all its bits in use.
@@ -247,4 +247,73 @@ fn a_segment_nearly_at_the_contact_tolerance_touches_when_integers_say_so() {
         n_touching += usize::from(truth);
     }
     assert!(n_touching > 500 && n_touching < 1500, "{n_touching}");
+}
+
+#[test]
+fn a_cut_edge_ends_in_the_plane_that_cuts_it() {
+    let (mut rng, mut n_checked) = (Rng(7), 0);
+    for i in 0..6000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let [p, q, c] = [0; 3].map(|_| point(&mut rng));
+        let middle = p + 0.5 * (1.0 + number(&mut rng)) * (q - p);
+        // At a flat angle, so that the cut is as uncertain as it may be.
+        let [a, b] = [1.0, -1.0].map(|side| middle + side * (q - p) + 0.003 * point(&mut rng));
+        let positions = [p, q, a, b, c].map(|p| p * scale);
+        let planes = Planes::new(&positions, &[[2, 3, 4]]);
+        let name = PlaneName::Triangle(0);
+        let ends = [0, 1].map(|v| planes.vertex(v));
+        let at = [0, 1].map(|k| planes.side(&planes.plane(name), &ends[k]));
+        if at[0].1.times(at[1].1) != Sign::Negative {
+            continue;
+        }
+        let at = at.map(|(estimate, _)| estimate);
+        let place = Place::OnEdge([0, 1], name);
+        let cut = planes.corner_between([&ends[0], &ends[1]], at, place);
+        let of_plane = [2, 3, 4].map(|v| planes.vertex(v));
+        let mut four = [&of_plane[0], &of_plane[1], &of_plane[2], &cut];
+        for _ in 0..4 {
+            four.rotate_left(1);
+            assert_eq!(planes.volume(four), Sign::Zero, "{positions:?}");
+        }
+        // With the eye in the plane, everything in it has its image on one line.
+        let camera = camera(positions[2], scale * (q - p), DEFAULT_NEAR);
+        let planes = planes.seen_by(&camera);
+        let mut three = [&of_plane[1], &of_plane[2], &cut];
+        for _ in 0..3 {
+            three.rotate_left(1);
+            assert_eq!(planes.turn(three[0], three[1], three[2]), Sign::Zero, "{positions:?}");
+        }
+        n_checked += 1;
+    }
+    assert!(n_checked > 1000, "{n_checked}");
+}
+
+#[test]
+fn a_cut_between_wide_estimates_is_computed_anew() {
+    let height = 1e-12;
+    let above = dvec3(0.25, 0.25, height);
+    let points = [DVec3::ZERO, DVec3::X, DVec3::Y, above, above - 2.0 * height * DVec3::Z];
+    let sight = Sight::new(&points, &camera(dvec3(9.0, 8.0, 7.0), -DVec3::ONE, DEFAULT_NEAR));
+    // The first end's value is known to lie between nothing and two, the last end's exactly.
+    let wide = Estimate { value: 1.0, error: 1.0 };
+    let sharp = Estimate { value: -height, error: 0.0 };
+    for at in [[wide, sharp], [-wide, -sharp]] {
+        let cut = sight.cut([3, 4], CutPlane::Triangle([0, 1, 2]), at);
+        assert!((cut.t - 0.5).abs() <= 1e-9, "{cut:?}");
+    }
+}
+
+#[test]
+fn points_on_one_sight_line_have_one_image_even_where_products_vanish() {
+    // Both points lie on a line through the eye. Differences are rounded, and at the smallest scale
+    // one of two equal products is rounded down, and the other one up.
+    let big = 2f64.powi(53);
+    let (eye, near, far) = (2.0 - big, dvec3(3.0, 1.0, 0.0), dvec3(5.0 * big + 8.0, 6.0, 0.0));
+    for exponent in [0, -400, -563, 400] {
+        let scale = 2f64.powi(exponent);
+        let points = [near * scale, far * scale];
+        let eye = dvec3(eye * scale, 0.0, 0.0);
+        let sight = Sight::new(&points, &camera(eye, scale * DVec3::X, DEFAULT_NEAR));
+        assert!(sight.same_image(0, 1), "2^{exponent}");
+    }
 }

@@ -1,11 +1,11 @@
 //! Which short pieces are left out of a drawing, and which are not.
 
 use glam::{DVec3, dvec2, dvec3};
-use hiddenline::camera::{Camera, Projection};
-use hiddenline::classify::LineSelection;
-use hiddenline::draw::{DrawOptions, HiddenLines, draw};
-use hiddenline::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::model::scene::Scene;
+use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
 
 /// Strokes as (visible, first x, last x) of the level lines of some faces, seen from above, one
 /// millimeter to the unit.

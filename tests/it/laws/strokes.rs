@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
 use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::predicates::Sign;
@@ -103,7 +103,7 @@ fn a_convex_solid_shows_the_edges_of_its_front_faces_whole() {
         let camera = Camera::new(eye, DVec3::splat(0.5), DVec3::Z, projection).unwrap();
         let scene = unit_cube();
         let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
-        let (visibility, ..) = solve(&view, Engine::Roberts, &Settings::default());
+        let (visibility, ..) = solve(&view, LineEngine::Roberts, &VisibilityOptions::default());
         for (i, drawn) in view.selected().iter().enumerate() {
             let uses = scene.topology().uses(drawn.edge);
             let in_front = uses.iter().any(|u| view.facing(u.face()) == Sign::Positive);

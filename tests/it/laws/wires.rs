@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewSegments, ViewedScene};
 use hiddenline::stages::draw::{DrawOptions, draw};
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::surface::tin;
 use hiddenline::stages::model::arrange::{Arrangement, Pose};
 use hiddenline::stages::model::mesh::{Mesh, MeshError, PolygonSoup};
@@ -16,10 +16,10 @@ use hiddenline::stages::strokes::StrokeKind;
 
 const WIRES: LineSelection = LineSelection::NONE.with(StrokeKind::Wire);
 
-const ENGINES: [Engine; 3] = [Engine::Roberts, Engine::Appel, Engine::AllPairs];
+const ENGINES: [LineEngine; 3] = [LineEngine::Roberts, LineEngine::Appel, LineEngine::AllPairs];
 
-const COUNTED: Settings =
-    Settings { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
+const COUNTED: VisibilityOptions =
+    VisibilityOptions { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
 
 /// The scene's mesh as soup.
 fn soup(scene: &TestScene) -> PolygonSoup {
@@ -30,7 +30,7 @@ fn soup(scene: &TestScene) -> PolygonSoup {
 }
 
 /// The spans of all wires.
-fn spans_of_wires(scene: &Scene, camera: &Camera, engine: Engine) -> Vec<EngineEdge> {
+fn spans_of_wires(scene: &Scene, camera: &Camera, engine: LineEngine) -> Vec<EngineEdge> {
     let view = ViewedScene::new(scene, camera, WIRES, 30.0);
     let (visibility, ..) = solve(&view, engine, &COUNTED);
     let span = |i: usize| {

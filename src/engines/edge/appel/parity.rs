@@ -119,11 +119,11 @@ mod tests {
             let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
             let segments = roberts::segments(&view);
             // What covers each segment's beginning, by Roberts with all layers.
-            let settings = super::super::super::Settings {
+            let options = super::super::super::VisibilityOptions {
                 count_layers: true,
-                ..super::super::super::Settings::default()
+                ..super::super::super::VisibilityOptions::default()
             };
-            let (visibility, _) = roberts::solve_all_pairs(&view, &settings);
+            let (visibility, _) = roberts::solve_all_pairs(&view, &options);
             let mut starts: Vec<_> = (0..segments.len())
                 .map(|i| visibility.spans(i).first().map(|span| [span.qi as i32; 2]))
                 .collect();

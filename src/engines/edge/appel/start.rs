@@ -145,7 +145,7 @@ pub(super) fn layers_beyond<'s>(
 ) -> Vec<[i32; 2]> {
     let questions: Vec<(Option<&Segment>, usize)> = ends.collect();
     let mut layers = vec![[0; 2]; questions.len()];
-    // Whether a triangle is in front is asked of it, so that depths are of no use here.
+    // Each triangle is tested for being in front, so depths are not needed here.
     let flat = |place: Place, number: u32| place.flat().of(number);
     let first: Vec<LatticeBox> = (0..)
         .zip(&questions)

@@ -48,7 +48,7 @@ pub(super) struct Surroundings<'s> {
     pub rounding: &'s Rounding,
     /// The triangles that the near plane cuts.
     pub cut_by_near_plane: &'s [u32],
-    /// See [`super::super::Settings`].
+    /// See [`super::super::VisibilityOptions`].
     pub contact_tolerance: f64,
 }
 

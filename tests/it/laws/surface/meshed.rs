@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::ViewedScene;
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::surface::{CellOrder, max_min};
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::surface::{
@@ -33,7 +33,7 @@ fn named([a, b]: [DVec3; 2], ranges: &[(f64, f64)]) -> ([[u64; 3]; 2], Vec<(f64,
 
 fn solved(surface: &LinedScene, camera: &Camera) -> Visible {
     let view = ViewedScene::with_edges(&surface.scene, camera, surface.lines.clone());
-    let (visibility, _, _) = solve(&view, Engine::Roberts, &Settings::default());
+    let (visibility, _, _) = solve(&view, LineEngine::Roberts, &VisibilityOptions::default());
     let position = |v: u32| surface.scene.mesh().positions()[v as usize];
     view.selected()
         .iter()

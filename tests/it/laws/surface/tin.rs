@@ -4,7 +4,7 @@ use super::max_min::{Dice, PERSPECTIVE, camera, coordinate, rough};
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::ViewedScene;
-use hiddenline::stages::engines::edge::{Engine, Settings, solve};
+use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::surface::{CellOrder, max_min, tin};
 use hiddenline::stages::engines::visibility::Visibility;
 use hiddenline::stages::surface::formula::{Formula, Variables};
@@ -45,10 +45,11 @@ fn difference(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
 /// Whether the horizons could draw it; panics where they differ from all pairs.
 fn check(surface: &LinedScene, camera: &Camera, name: &str) -> bool {
     let view = ViewedScene::with_edges(&surface.scene, camera, surface.lines.clone());
-    let settings = Settings { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let settings =
+        VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
     let Some((by_horizons, _)) = tin::solve(&view) else { return false };
     let (in_strips, _) = tin::solve_in_strips(&view, 3).expect("as in one strip");
-    let (expected, ..) = solve(&view, Engine::AllPairs, &settings);
+    let (expected, ..) = solve(&view, LineEngine::AllPairs, &settings);
     let expected = visible(&expected);
     for (how, found) in [("one strip", by_horizons), ("strips", in_strips)] {
         for (k, (found, expected)) in visible(&found).iter().zip(&expected).enumerate() {
