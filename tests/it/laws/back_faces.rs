@@ -244,3 +244,28 @@ fn what_is_left_out_changes_nothing() {
     eprintln!("edges left out in {n_left_out} of {n_scenes} scenes");
     assert!(n_left_out > n_scenes / 4);
 }
+
+#[test]
+fn edges_in_a_flat_pleat_show() {
+    // A box whose top goes in, out again and in again, all in one plane:
+    // from 3 to 1, back to 2, and from there to the middle.
+    let mut points = corners(dvec3(-3.0, -3.0, -3.0), dvec3(6.0, 6.0, 6.0));
+    for reach in [1.0, 2.0] {
+        let ring = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        points.extend(ring.map(|(x, y)| dvec3(reach * x, reach * y, 3.0)));
+    }
+    let mut faces: Vec<Vec<u32>> =
+        BOX.iter().filter(|face| **face != BOX[1]).map(|face| face.to_vec()).collect();
+    for [outer, inner] in [[[4, 5, 7, 6], [8, 9, 10, 11]], [[8, 9, 10, 11], [12, 13, 14, 15]]] {
+        for (i, k) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+            faces.push(vec![outer[i], outer[k], inner[k]]);
+            faces.push(vec![outer[i], inner[k], inner[i]]);
+        }
+    }
+    faces.push(vec![12, 13, 14, 15]);
+    let faces: Vec<&[u32]> = faces.iter().map(Vec::as_slice).collect();
+    let mut soup = PolygonSoup::default();
+    add(&mut soup, &points, &faces);
+    let camera = looking(dvec3(5.0, -7.0, 9.0), PERSPECTIVE);
+    assert_eq!(counted(&scene(soup), &camera, &VISIBLE_ONLY), [0, 0]);
+}

@@ -309,7 +309,7 @@ fn points_on_one_sight_line_have_one_image_even_where_products_vanish() {
     // one of two equal products is rounded down, and the other one up.
     let big = 2f64.powi(53);
     let (eye, near, far) = (2.0 - big, dvec3(3.0, 1.0, 0.0), dvec3(5.0 * big + 8.0, 6.0, 0.0));
-    for exponent in [0, -400, -563, 400] {
+    for exponent in [0, -400, -564, 400] {
         let scale = 2f64.powi(exponent);
         let points = [near * scale, far * scale];
         let eye = dvec3(eye * scale, 0.0, 0.0);
