@@ -39,10 +39,9 @@ fn named_paths(text: &str) -> Vec<String> {
         .collect::<Vec<_>>()
         .join("\n");
     let mut paths = Vec::new();
-    for item in code.split(';') {
-        let item = item.trim_start();
+    // Items begin a line, which words in a message do not.
+    for item in format!("\n{code}").split(';') {
         let start = item.rfind("\nuse ").map(|at| at + 5);
-        let start = start.or_else(|| item.starts_with("use ").then_some(4));
         match start {
             Some(start) => expand("", &item[start..], &mut paths),
             None => {
