@@ -184,7 +184,7 @@ pub(crate) fn assert_same(
 
 #[test]
 fn nothing_that_shows_is_left_out_behind_walls() {
-    let (mut n_thinned, n_scenes) = (0, number_of_scenes(32));
+    let (mut n_thinned, n_scenes) = (0, number_of_scenes(16));
     for seed in 0..n_scenes {
         let mut rng = Rng(seed);
         let scene = rubble(&mut rng);
