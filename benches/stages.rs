@@ -13,7 +13,6 @@ use libm::{cos, sin};
 use hiddenline::stages::camera::{Camera, DEFAULT_FOV_DEG, DEFAULT_NEAR, Projection};
 use hiddenline::stages::chain::{ChainOptions, chain};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
-use hiddenline::stages::draw::HiddenLines;
 use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::image::raster::Corners;
 use hiddenline::stages::engines::image::{self, PixelMap, Raster};
@@ -22,6 +21,7 @@ use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::model::topology::Topology;
 use hiddenline::stages::page::{Dash, Page, PageOptions, PlotOptions};
 use hiddenline::stages::read::{ModelFormat, read_bytes};
+use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::write::svg::{self, StrokeElement};
 

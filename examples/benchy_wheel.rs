@@ -6,10 +6,11 @@ mod sheet;
 use std::path::Path;
 
 use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::draw::{DrawOptions, HiddenLines};
+use hiddenline::stages::draw::DrawOptions;
 use hiddenline::stages::page::PageOptions;
 use hiddenline::stages::plot::Plot;
 use hiddenline::stages::read::read_file;
+use hiddenline::stages::strokes::HiddenLines;
 
 use plots::{Result, save};
 use sheet::Sheet;

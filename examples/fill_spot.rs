@@ -41,7 +41,7 @@ pub(crate) fn plot() -> Result<Plot> {
     let edges = draw(&scene, &camera, &DrawOptions::default(), page.mm_per_image_unit()).drawing;
     Ok(page
         .plot(&edges, plot_options("Spot in five inks"))
-        .with_fills(&page, &filled, DEFAULT_SEAM_MM)
+        .with_fills(&page, &filled.layers, DEFAULT_SEAM_MM)
         .plot)
 }
 

@@ -6,10 +6,11 @@ mod sheet;
 use glam::{DQuat, DVec3, dvec3};
 
 use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::draw::{DrawOptions, HiddenLines};
+use hiddenline::stages::draw::DrawOptions;
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::page::{PageOptions, Paper};
 use hiddenline::stages::plot::Plot;
+use hiddenline::stages::strokes::HiddenLines;
 
 use plots::{Result, save};
 use sheet::Sheet;

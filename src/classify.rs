@@ -21,7 +21,7 @@
 //! flipped for the comparison, so kinds do not depend on the winding.
 
 use crate::camera::{Camera, ImagePoint};
-use crate::model::scene::{LineSource, Scene};
+use crate::model::scene::{Dihedral, LineSource, Scene};
 use crate::model::topology::EdgeUse;
 use crate::predicates::{PiercePoint, Sight, Sign, exact};
 use crate::strokes::StrokeKind;
@@ -431,7 +431,7 @@ impl<'a> ViewedScene<'a> {
         let against = first.runs_upwards() == second.runs_upwards();
         let [facing, other] = faces.map(|face| self.facing_along(face, edge));
         let other = if against { other.flipped() } else { other };
-        let is_crease = || creases.holds(faces.map(|face| creases.normal(face)), against);
+        let is_crease = || creases.has(edge);
         if (facing == Sign::Positive) != (other == Sign::Positive) {
             let by_crease = || lines.contains(StrokeKind::Crease) && is_crease();
             let by_name = every || lines.contains(StrokeKind::Silhouette);
@@ -455,8 +455,8 @@ impl<'a> ViewedScene<'a> {
 struct Creases<'a> {
     /// Of the crease angle.
     cosine: f64,
-    /// Of each face, or empty.
-    normals: &'a [DVec3],
+    /// Of each edge, or empty.
+    dihedrals: &'a [Dihedral],
     /// For each face a number that faces of equal group and material share, or empty.
     groups: &'a [u32],
 }
@@ -468,7 +468,7 @@ impl<'a> Creases<'a> {
             has_materials || lines.contains(StrokeKind::Crease) || lines.contains(StrokeKind::Mesh);
         Self {
             cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()),
-            normals: if has_creases { scene.normals() } else { &[] },
+            dihedrals: if has_creases { scene.dihedrals() } else { &[] },
             groups: if has_materials { scene.groups() } else { &[] },
         }
     }
@@ -479,16 +479,8 @@ impl<'a> Creases<'a> {
         uses.windows(2).any(|pair| group(&pair[0]) != group(&pair[1]))
     }
 
-    fn normal(&self, face: u32) -> DVec3 {
-        self.normals.get(face as usize).copied().unwrap_or_default()
-    }
-
-    /// Whether faces with these normals meet at more than the crease angle.
-    ///
-    /// Rounded, since the angle is a setting. A face without area has no normal and no crease.
-    fn holds(&self, [a, b]: [DVec3; 2], against: bool) -> bool {
-        let dot = if against { -a.dot(b) } else { a.dot(b) };
-        let sizes = a.length() * b.length();
-        sizes > 0.0 && dot < self.cosine * sizes
+    /// Whether the two faces at an edge meet at more than the crease angle.
+    fn has(&self, edge: u32) -> bool {
+        self.dihedrals.get(edge as usize).is_some_and(|angle| angle.is_above(self.cosine))
     }
 }

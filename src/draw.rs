@@ -1,13 +1,14 @@
 //! From a scene and a camera to strokes, stage by stage.
 
 pub mod meshed;
+pub mod surface;
 
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, outline, solve};
 use crate::model::scene::Scene;
-use crate::strokes::Strokes;
+use crate::strokes::{HiddenLines, Strokes};
 use crate::timing::{Seconds, timed};
 
 /// The default contact tolerance as a fraction of the largest coordinate: twice the spacing of
@@ -24,18 +25,6 @@ pub const LEAST_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 /// The default shortest stroke in millimeters on paper: a little less than the width of a pen, which
 /// makes a dot of that size anyway.
 pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.25;
-
-/// What happens to hidden lines.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum HiddenLines {
-    /// Not drawn.
-    #[default]
-    None,
-    /// Dashed, on a layer of their own.
-    Dashed,
-    /// Solid, on a layer of their own.
-    Solid,
-}
 
 /// What to draw, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,7 +127,7 @@ impl DrawOptions {
 }
 
 /// A drawing, and what it took to make it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct DrawOutput {
     /// The strokes.
     pub drawing: Strokes,
@@ -152,6 +141,37 @@ pub struct DrawOutput {
     pub n_exact: u64,
     /// Wall time of classification, visibility and strokes; the rest is zero.
     pub seconds: Seconds,
+}
+
+/// How large a mesh is, as drawn.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct MeshSize {
+    /// Distinct vertices.
+    pub vertices: usize,
+    /// Faces.
+    pub faces: usize,
+    /// Triangles that these faces consist of, before clipping.
+    pub triangles: usize,
+    /// Distinct edges of these faces, before clipping.
+    pub edges: usize,
+    /// Lines of intersection, before any are selected for drawing.
+    pub intersections: usize,
+    /// Pairs of triangles whose boxes touch, tested for lines of intersection.
+    pub intersection_pairs: u64,
+}
+
+impl MeshSize {
+    /// The size of a scene's mesh.
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            vertices: scene.mesh().positions().len(),
+            faces: scene.mesh().n_faces(),
+            triangles: scene.triangles().len(),
+            edges: scene.topology().edges().len(),
+            intersections: scene.intersections().lines().len(),
+            intersection_pairs: scene.intersections().n_pairs(),
+        }
+    }
 }
 
 /// Draws `scene` as `camera` sees it.

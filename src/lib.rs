@@ -77,11 +77,11 @@
 //!                               write ─► bytes
 //! ```
 //!
-//! `draw` runs the stages from scene to strokes. The page is placed first: it needs only the
-//! `extent` of the scene, so lengths on paper are known before any line is chosen. `predicates`
-//! make every decision on the way. `engines::image` finds the face that each pixel shows;
-//! `shading::preview` shades it. To read the code, take the modules in the order below: no module
-//! uses a later one.
+//! `draw` runs the stages from a scene to strokes, and `draw::surface` those from a surface. The
+//! page is placed first: it needs only the `extent` of what is drawn, so lengths on paper are known
+//! before any line is chosen. `predicates` make every decision on the way. `engines::image` finds
+//! the face that each pixel shows; `shading::preview` shades it. To read the code, take the modules
+//! in the order below: no module uses a later one.
 //!
 //! # What is exact
 //!
@@ -125,13 +125,13 @@ pub mod stages {
 
     pub mod axes;
 
-    pub mod draw;
-
     pub mod plot;
 
-    pub mod shading;
-
     pub mod page;
+
+    pub mod draw;
+
+    pub mod shading;
 
     pub mod optimize;
 
@@ -144,8 +144,8 @@ pub mod stages {
 }
 
 use stages::{
-    api, camera, chain, classify, draw, engines, extent, model, optimize, page, plot, predicates,
-    read, shading, strokes, surface, timing, write,
+    api, axes, camera, chain, classify, draw, engines, extent, model, optimize, page, plot,
+    predicates, read, shading, strokes, surface, timing, write,
 };
 
 // A scene.
@@ -162,10 +162,10 @@ pub use camera::framing::{NamedView, View};
 // The lines.
 pub use api::Drawing;
 pub use classify::LineSelection;
-pub use draw::{DrawOptions, HiddenLines};
+pub use draw::DrawOptions;
 pub use engines::edge::LineEngine;
 pub use shading::fill::{FillOptions, Palette};
-pub use strokes::{Stroke, StrokeKind, Strokes};
+pub use strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
 
 // The paper.
 pub use api::Sheet;

@@ -22,16 +22,16 @@ use glam::{DAffine2, DMat2, DVec2};
 use thiserror::Error;
 
 use crate::camera::{Camera, Projection};
-use crate::draw::HiddenLines;
 use crate::extent::Extent;
 use crate::extent::window::Window;
-use crate::plot::{Layer, Pen, Plot};
-use crate::shading::fill::Filled;
-use crate::strokes::Strokes;
+use crate::plot::{FillLayer, Layer, Pen, Plot};
+use crate::strokes::{HiddenLines, Strokes};
 
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
-pub use self::pens::{LayerControls, PenRole, PenRule};
+pub use self::pens::{
+    LayerControls, PenRole, PenRule, default_pen_color, with_line_pens, with_underside_pen,
+};
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 
 /// Empty border of the page in millimeters, unless set otherwise.
@@ -308,15 +308,15 @@ impl Page {
 }
 
 impl PlacedPlot {
-    /// Lays areas below the lines: a layer for each of the fill's, numbered before them.
+    /// Lays areas below the lines: one layer for each of `filled`, numbered before them.
     ///
     /// Each area is outlined in its own color by a line `seam_mm` wide, for which see
     /// [`Fills::seam_mm`](crate::plot::Fills::seam_mm); it may reach half of that into the margin.
     #[must_use]
-    pub fn with_fills(mut self, page: &Page, filled: &Filled, seam_mm: f64) -> Self {
+    pub fn with_fills(mut self, page: &Page, filled: &[FillLayer], seam_mm: f64) -> Self {
         let window = page.window();
-        let mut layers = Vec::with_capacity(filled.layers.len() + self.plot.layers.len());
-        for layer in &filled.layers {
+        let mut layers = Vec::with_capacity(filled.len() + self.plot.layers.len());
+        for layer in filled {
             let (fills, cropped) =
                 areas::placed(&layer.fills, &page.page_from_image, &window, seam_mm);
             self.cropped |= cropped;

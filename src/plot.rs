@@ -149,6 +149,17 @@ pub struct Fills {
     pub seam_mm: f64,
 }
 
+/// Areas of one ink before they are placed on a page.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FillLayer {
+    /// What the layer holds, as a word.
+    pub name: String,
+    /// The ink, or that of the first area.
+    pub color: [u8; 3],
+    /// The areas in image coordinates.
+    pub fills: Fills,
+}
+
 /// One filled area.
 #[derive(Debug, Clone, Copy)]
 pub struct Area<'a> {

@@ -57,6 +57,18 @@ impl StrokeKind {
     }
 }
 
+/// What happens to hidden lines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum HiddenLines {
+    /// Not drawn.
+    #[default]
+    None,
+    /// Dashed, on a layer of their own.
+    Dashed,
+    /// Solid, on a layer of their own.
+    Solid,
+}
+
 /// One polyline of a [`Strokes`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke<'a> {

@@ -26,6 +26,14 @@ pub struct Seconds {
     pub total: f64,
 }
 
+impl Seconds {
+    /// The time of all stages together, without what lies between them.
+    pub fn sum(&self) -> f64 {
+        let Self { read, topology, classify, visibility, strokes, order, write, total: _ } = self;
+        read + topology + classify + visibility + strokes + order + write
+    }
+}
+
 impl AddAssign for Seconds {
     fn add_assign(&mut self, more: Self) {
         self.read += more.read;

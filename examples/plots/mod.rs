@@ -5,9 +5,9 @@ use std::fs::{File, create_dir_all};
 use std::io::BufWriter;
 use std::path::Path;
 
-use hiddenline::stages::draw::HiddenLines;
 use hiddenline::stages::page::{Dash, PlotOptions};
 use hiddenline::stages::plot::Plot;
+use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::write::png::{self, Resolution};
 use hiddenline::stages::write::svg::{self, StrokeElement};
 

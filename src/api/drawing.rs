@@ -103,7 +103,7 @@ impl Drawing<'_> {
         let placed = page.plot(&strokes, plot);
         let Some(options) = &self.fill else { return Ok(Sheet::new(placed)) };
         let filled = fill(self.scene, &camera, options)?;
-        Ok(Sheet::new(placed.with_fills(&page, &filled, DEFAULT_SEAM_MM)))
+        Ok(Sheet::new(placed.with_fills(&page, &filled.layers, DEFAULT_SEAM_MM)))
     }
 
     /// The strokes with their kinds, in image coordinates (y up), and the page, which maps these to

@@ -137,6 +137,28 @@ impl Default for View {
     }
 }
 
+impl From<&Camera> for View {
+    /// The view that gives this very camera, whatever the scene.
+    fn from(camera: &Camera) -> Self {
+        let (projection, fov_deg, near) = match camera.projection() {
+            Projection::Perspective { fov_deg, near } => {
+                (ProjectionKind::Perspective, fov_deg, near)
+            }
+            Projection::Orthographic => {
+                (ProjectionKind::Orthographic, DEFAULT_FOV_DEG, DEFAULT_NEAR)
+            }
+        };
+        Self {
+            standpoint: Standpoint::Eye(camera.eye()),
+            target: Some(camera.target()),
+            up: Some(camera.up()),
+            projection: Some(projection),
+            fov_deg,
+            near,
+        }
+    }
+}
+
 /// Why no camera can be chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ViewError {

@@ -16,6 +16,7 @@
 pub mod framing;
 
 mod image_point;
+mod turntable;
 
 use glam::{DVec2, DVec3};
 use thiserror::Error;

@@ -105,6 +105,14 @@ impl ViewSource {
         }
     }
 
+    /// What was asked for, the camera of a file included.
+    pub(super) fn framing(&self) -> Result<View, Box<dyn Error>> {
+        match self {
+            Self::File(path) => Ok(View::from(&read_camera(path)?)),
+            Self::View(framing) => Ok(*framing),
+        }
+    }
+
     /// The camera, for a scene with these least and greatest coordinates.
     pub(super) fn camera(&self, bounds: (DVec3, DVec3)) -> Result<Camera, Box<dyn Error>> {
         match self {
@@ -117,7 +125,7 @@ impl ViewSource {
 }
 
 /// An error about the point of view, with the options that mend it.
-fn with_remedy(error: &ViewError) -> String {
+pub(super) fn with_remedy(error: &ViewError) -> String {
     let remedy = match error {
         ViewError::Camera(CameraError::UpParallel) => "; give another --up",
         ViewError::Camera(CameraError::NoDirection | CameraError::TooFarApart) => {

@@ -6,10 +6,10 @@ use std::error::Error;
 
 use clap::Args;
 use glam::DVec2;
-use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::Options;
-use hiddenline::stages::page::{Dash, PageOptions, PlotOptions};
+use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_line_pens};
 use hiddenline::stages::write::Format;
 
 use self::lines::LineArgs;
@@ -104,7 +104,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.progress.stage("drawing");
     let sheet = Sheet::new(scene.extent(&camera), camera, &job.page)?;
     let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
-    run.stats.count(&scene);
+    run.stats.count(MeshSize::of(&scene));
     run.stats.add(&drawn);
     if drawn.drawing.is_empty() {
         run.empty_because = why_empty(job, &scene, &sheet, drawn.n_lines);
@@ -141,7 +141,12 @@ fn plot_options(job: &Job) -> PlotOptions {
         hidden: job.draw.hidden,
         dash: job.dash,
         title: job.files.title(),
-        pens: job.output.plotting.pens_for(&job.draw, job.pen_width_mm),
+        pens: with_line_pens(
+            job.output.plotting.pens(job.pen_width_mm),
+            job.draw.lines,
+            job.draw.hidden_levels,
+            job.pen_width_mm,
+        ),
         source: source::source(config::arguments()),
     }
 }

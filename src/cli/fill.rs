@@ -6,11 +6,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use glam::DMat3;
 use hiddenline::stages::camera::Camera;
-use hiddenline::stages::camera::framing::sin_cos_deg;
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
-use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::engines::face::Prepared;
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::model::scene::Scene;
@@ -19,6 +17,7 @@ use hiddenline::stages::page::{PageOptions, PlotOptions};
 use hiddenline::stages::read::material_colors;
 use hiddenline::stages::shading::fill::{FillOptions, Filled, fill_prepared};
 use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::surface::DEFAULT_SAMPLES;
 use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::NoFills;
 
@@ -30,7 +29,6 @@ use super::page::PageArgs;
 use super::paper::{Run, placed};
 use super::progress::Progress;
 use super::scene::Subject;
-use super::surface::DEFAULT_SAMPLES;
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -172,18 +170,16 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         run.notes.warnings.extend(found.warnings);
     }
     let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))?;
-    run.stats.engine = prepared.engine().name();
-    run.stats.count(&scene);
+    run.stats.engine = prepared.engine().name().into();
+    run.stats.count(MeshSize::of(&scene));
     let Some(n) = job.turntable else {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
     let Run { output, start, progress, stats, mut notes, unit_mm, empty_because } = run;
     drop(progress);
-    let cameras = (0..n).map(|k| turned(&camera, 360.0 * f64::from(k) / f64::from(n)));
-    let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
-    let extents = cameras.iter().map(|camera| scene.extent(camera));
-    let frame = Some(extents.fold(Extent::EMPTY, Extent::union));
+    let cameras = camera.turntable(n.into())?;
+    let frame = Some(scene.extent_of_views(&cameras));
     let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame };
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
@@ -231,7 +227,7 @@ impl Picture<'_> {
             edges = drawn.drawing;
         }
         run.stats.counts.fill = filled.work;
-        run.stats.engine = filled.engine.name();
+        run.stats.engine = filled.engine.name().into();
         let options = PlotOptions {
             pen_width_mm: job.pen_width_mm,
             pens: job.output.plotting.pens(job.pen_width_mm),
@@ -240,7 +236,7 @@ impl Picture<'_> {
             title: job.input.title(),
             source: source::source(config::arguments()),
         };
-        let mut placed = page.plot(&edges, options).with_fills(&page, &filled, job.seam_mm);
+        let mut placed = page.plot(&edges, options).with_fills(&page, &filled.layers, job.seam_mm);
         if job.edges.is_none() {
             placed.plot.layers.retain(|layer| !layer.fills.is_empty());
         }
@@ -250,14 +246,6 @@ impl Picture<'_> {
         }
         run.plot_to(path, &page.paper.description(), placed.plot, &Options::for_drawings())
     }
-}
-
-/// The camera turned around the vertical through its target; exact for quarter turns.
-fn turned(camera: &Camera, angle_deg: f64) -> Result<Camera, Box<dyn Error>> {
-    let (sin, cos) = sin_cos_deg(angle_deg);
-    let turn = DMat3::from_cols_array(&[cos, sin, 0.0, -sin, cos, 0.0, 0.0, 0.0, 1.0]);
-    let eye = camera.target() + turn * (camera.eye() - camera.target());
-    Ok(Camera::new(eye, camera.target(), turn * camera.up(), camera.projection())?)
 }
 
 /// `NAME.svg` to `NAME-001.svg`.

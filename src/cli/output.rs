@@ -126,6 +126,33 @@ impl OutputArgs {
     }
 }
 
+impl OutputOptions {
+    /// The output of a picture, which no pen draws: a PNG.
+    pub(super) fn picture(
+        path: Option<PathBuf>,
+        threads: Option<usize>,
+        stats: bool,
+        quiet: bool,
+    ) -> Result<Self, Refused> {
+        Ok(Self {
+            path,
+            format: Format::Png,
+            svg_element: StrokeElement::default(),
+            resolution: Resolution::default(),
+            marks: Marks::default(),
+            threads,
+            stats,
+            quiet,
+            verbose: false,
+            strict: false,
+            plotting: Plotting::default(),
+            target: Target::new(Format::Png, None, None)?,
+            inputs: Vec::new(),
+            warnings: Vec::new(),
+        })
+    }
+}
+
 /// Warnings about what was typed for another format than that of the output.
 fn without_effect(format: Format) -> Vec<String> {
     let for_png = ["--dpi", "--png-width", "--png-show"].map(|option| (option, Format::Png));

@@ -12,7 +12,7 @@ use hiddenline::stages::optimize::{Effort, Options};
 use hiddenline::stages::page::{Page, PageError, PageOptions, Placement, PlotOptions, crop_to};
 use hiddenline::stages::plot::Plot;
 use hiddenline::stages::strokes::Strokes;
-use hiddenline::stages::timing::timed;
+use hiddenline::stages::timing::{Seconds, timed};
 use hiddenline::stages::write::png::PngError;
 use hiddenline::stages::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
@@ -57,7 +57,7 @@ pub(super) struct Sheet {
     pub(super) camera: Camera,
     pub(super) page: Page,
     pub(super) extent: Extent,
-    options: PageOptions,
+    pub(super) options: PageOptions,
 }
 
 impl Sheet {
@@ -99,13 +99,18 @@ pub(super) fn placed(
     camera: &Camera,
     options: &PageOptions,
 ) -> Result<Page, String> {
-    Page::place(extent, camera, options).map_err(|error| match error {
+    Page::place(extent, camera, options).map_err(|error| page_error(&error))
+}
+
+/// An error about the page, with the options that mend it.
+pub(super) fn page_error(error: &PageError) -> String {
+    match error {
         PageError::Margins { .. } => {
             format!("{error}; give a smaller --margin or a larger --page")
         }
         PageError::NoFieldOfView => format!("{error}; give --projection perspective"),
         PageError::NegativeMargin(_) | PageError::Scale => error.to_string(),
-    })
+    }
 }
 
 /// Refuses to send a picture to a terminal.
@@ -117,7 +122,7 @@ fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
 }
 
 /// Sets how many threads work; `None` is one for each core.
-pub(super) fn start_threads(threads: Option<usize>) -> Result<Stats, Box<dyn Error>> {
+fn start_threads(threads: Option<usize>) -> Result<Stats, Box<dyn Error>> {
     if let Some(threads) = threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
@@ -150,7 +155,7 @@ impl<'a> Run<'a> {
             let path = self.output.path.as_deref();
             let what = Written { paper: &paper, contents: drawing_described(drawing) };
             return self.write(path, what, drawing.is_empty(), None, |out| {
-                Ok(json::write(drawing, camera, page.page_from_image, out)?)
+                json::write(drawing, camera, page.page_from_image, out).map(|()| Seconds::default())
             });
         }
         self.progress.stage("placing");
@@ -223,30 +228,33 @@ impl<'a> Run<'a> {
             plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty());
         let what = Written { paper, contents: described(&plot, &done) };
         let written = &plot;
-        self.write(path, what, is_empty, Some(done), |out| {
+        self.write(path, what, is_empty, Some(done), |out| -> Result<Seconds, PngError> {
             match (output.format, &output.target.device) {
-                (Format::Hpgl, _) => match &profile {
-                    Some(profile) => Ok(hpgl::write(written, profile, out)?),
-                    None => Ok(()),
-                },
-                (Format::Gcode, Device::Gcode(profile)) => Ok(gcode::write(written, profile, out)?),
-                (Format::Pdf, _) => Ok(pdf::write(written, out)?),
-                (Format::Dxf, _) => Ok(dxf::write(written, out)?),
-                (Format::Png, _) => {
-                    png::write_marked(written, output.resolution, output.marks, out)
+                (Format::Hpgl, _) => {
+                    if let Some(profile) = &profile {
+                        hpgl::write(written, profile, out)?;
+                    }
                 }
-                _ => Ok(svg::write(written, output.svg_element, out)?),
+                (Format::Gcode, Device::Gcode(profile)) => gcode::write(written, profile, out)?,
+                (Format::Pdf, _) => pdf::write(written, out)?,
+                (Format::Dxf, _) => dxf::write(written, out)?,
+                (Format::Png, _) => {
+                    png::write_marked(written, output.resolution, output.marks, out)?;
+                }
+                _ => svg::write(written, output.svg_element, out)?,
             }
+            Ok(Seconds::default())
         })
     }
 
-    fn write(
+    /// Writes a file and ends the run. What `write` spent on other stages than writing it returns.
+    pub(super) fn write<E: From<io::Error> + Error + 'static>(
         mut self,
         path: Option<&Path>,
         what: Written,
         is_empty: bool,
         done: Option<Done>,
-        write: impl FnOnce(&mut dyn Write) -> Result<(), PngError>,
+        write: impl FnOnce(&mut dyn Write) -> Result<Seconds, E>,
     ) -> Result<(), Box<dyn Error>> {
         if is_empty {
             self.notes.warnings.push(format!("the drawing is empty: {}", self.empty_because));
@@ -260,6 +268,11 @@ impl<'a> Run<'a> {
         }
         self.progress.stage("writing");
         let mut write_seconds = 0.0;
+        let mut spent = Seconds::default();
+        let write = |out: &mut dyn Write| -> Result<(), E> {
+            spent = write(out)?;
+            Ok(())
+        };
         timed(&mut write_seconds, || -> Result<(), Box<dyn Error>> {
             match path {
                 None => Ok(file::write_to_stdout(write)?),
@@ -269,7 +282,9 @@ impl<'a> Run<'a> {
         })?;
         drop(self.progress);
         let (output, stats) = (self.output, &mut self.stats);
-        stats.seconds.write += write_seconds;
+        let elsewhere = Seconds { write: 0.0, ..spent };
+        stats.seconds += elsewhere;
+        stats.seconds.write += (write_seconds - elsewhere.sum()).max(0.0);
         stats.seconds.total = self.start.elapsed().as_secs_f64();
         stats.peak_bytes = peak_bytes();
         if !output.quiet {
@@ -291,13 +306,14 @@ impl<'a> Run<'a> {
 }
 
 /// What a file holds, for the message about it.
-struct Written<'a> {
-    paper: &'a str,
-    contents: String,
+pub(super) struct Written<'a> {
+    /// The size of the paper or picture.
+    pub(super) paper: &'a str,
+    pub(super) contents: String,
 }
 
 /// What joining and ordering did.
-struct Done {
+pub(super) struct Done {
     stats: PlotStats,
     n_changes: u64,
     order_seconds: f64,

@@ -3,26 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hiddenline::stages::draw::DrawOptions;
 use hiddenline::stages::optimize::estimate::{self, PenWork};
 use hiddenline::stages::optimize::{Effort, Options, optimize, split_by_distance};
-use hiddenline::stages::page::{LayerControls, PenRole, PenRule};
+use hiddenline::stages::page::{PenRole, PenRule, default_pen_color};
 use hiddenline::stages::plot::{Pen, Plot};
 use hiddenline::stages::write::Format;
 
 use super::machine::{MachineError, Target};
 use super::stats::PlotStats;
 use super::values::{self, PenText};
-
-/// Colors of pens of which none is said, by number.
-const PALETTE: [&str; 8] =
-    ["#000000", "#808080", "#c00000", "#0000c0", "#008000", "#c06000", "#8000a0", "#0090a0"];
-
-/// Nearly black: programs that tell pens by color take it for another one than the visible lines'.
-const OUTLINE_COLOR: &str = "#101010";
-
-/// Blue: told from the black of upper sides by people and by programs.
-const UNDERSIDE_COLOR: &str = "#0000c0";
 
 #[derive(Args)]
 #[command(next_help_heading = "Pens and plotter")]
@@ -75,6 +64,7 @@ pub(super) struct PlotArgs {
 }
 
 /// What is to be done with the strokes.
+#[derive(Default)]
 pub(super) struct Plotting {
     /// Whether they are to be left as they are.
     exact: bool,
@@ -156,44 +146,6 @@ impl Plotting {
         self.pens.iter().any(|pen| pen.drawn.is_hidden())
     }
 
-    /// The pens of a drawing; also one for the outline, when other lines are drawn too, and one for
-    /// each hidden level, unless there are rules for them.
-    pub(super) fn pens_for(&self, drawing: &DrawOptions, width_mm: f64) -> Vec<PenRule> {
-        let mut rules = self.pens(width_mm);
-        let mut add = |drawn, width_mm, color: String| {
-            if rules.iter().all(|rule| rule.drawn != drawn) {
-                // The first number is left for the visible lines.
-                let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
-                let number = (2..).find(is_free).unwrap_or(2);
-                let (pen, controls) = (Pen { width_mm, color }, LayerControls::default());
-                rules.push(PenRule { drawn, number, pen, controls });
-            }
-        };
-        if drawing.lines.has_outline() && drawing.lines.has_more_than_outline() {
-            add(PenRole::Outline, 2.0 * width_mm, OUTLINE_COLOR.into());
-        }
-        let levels = drawing.hidden_levels.unwrap_or(0);
-        for level in 1..=levels {
-            let gray = 0x80 + (level - 1) * 0x60 / levels;
-            add(PenRole::HiddenLevel(level), width_mm, format!("#{gray:02x}{gray:02x}{gray:02x}"));
-        }
-        rules
-    }
-
-    /// The pens of a surface; also one for its underside if that is apart, unless there is a rule.
-    pub(super) fn pens_for_surface(&self, underside: bool, width_mm: f64) -> Vec<PenRule> {
-        let mut rules = self.pens(width_mm);
-        if underside && rules.iter().all(|rule| rule.drawn != PenRole::Underside) {
-            // The first number is left for the lines on the upper side.
-            let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
-            let number = (2..).find(is_free).unwrap_or(2);
-            let pen = Pen { width_mm, color: UNDERSIDE_COLOR.into() };
-            let controls = LayerControls::default();
-            rules.push(PenRule { drawn: PenRole::Underside, number, pen, controls });
-        }
-        rules
-    }
-
     /// How long to search for a short way, if that was said.
     pub(super) fn effort(&self) -> Option<Effort> {
         self.effort
@@ -201,17 +153,13 @@ impl Plotting {
 
     /// The pens; `width_mm` is the width of those that have none of their own.
     pub(super) fn pens(&self, width_mm: f64) -> Vec<PenRule> {
-        let colors = PALETTE.iter().cycle();
         let rule = |pen: &PenText| PenRule {
             drawn: pen.drawn,
             number: pen.number,
             controls: pen.controls,
             pen: Pen {
                 width_mm: pen.width_mm.unwrap_or(width_mm),
-                color: pen.color.clone().unwrap_or_else(|| {
-                    let color = colors.clone().nth((pen.number as usize - 1) % PALETTE.len());
-                    color.copied().unwrap_or("#000000").to_owned()
-                }),
+                color: pen.color.clone().unwrap_or_else(|| default_pen_color(pen.number).into()),
             },
         };
         self.pens.iter().map(rule).collect()

@@ -3,27 +3,23 @@
 mod picture;
 
 use std::error::Error;
-use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
 use hiddenline::stages::camera::Projection;
 use hiddenline::stages::classify::LineSelection;
-use hiddenline::stages::draw::{DrawOptions, draw};
+use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::shading::preview::{self, PreviewError, PreviewOptions};
 use hiddenline::stages::write::Format;
 
 use self::picture::PictureArgs;
+use super::Refused;
 use super::camera::{CameraArgs, ViewSource};
 use super::input::{Input, InputArgs};
-use super::output::check_place;
-use super::paper::start_threads;
+use super::output::{OutputOptions, check_place};
+use super::paper::{Run, Written};
 use super::paths::is_dash;
-use super::progress::Progress;
 use super::scene::Subject;
-use super::stats::peak_bytes;
-use super::{Refused, file, messages};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -84,12 +80,8 @@ pub(super) struct Job {
     view: ViewSource,
     options: PreviewOptions,
     edges: Option<LineSelection>,
-    /// `None` is standard output.
-    path: Option<PathBuf>,
-    threads: Option<usize>,
     engine: String,
-    stats: bool,
-    quiet: bool,
+    output: OutputOptions,
 }
 
 impl PreviewArgs {
@@ -106,11 +98,8 @@ impl PreviewArgs {
             view,
             options: picture.options()?,
             edges: picture.edges.then_some(picture.lines),
-            path,
-            threads: threads.map(usize::from),
             engine: picture.engine_name(),
-            stats,
-            quiet,
+            output: OutputOptions::picture(path, threads.map(usize::from), stats, quiet)?,
         })
     }
 }
@@ -128,59 +117,32 @@ fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
-    let start = Instant::now();
-    if job.path.is_none() && io::stdout().is_terminal() {
-        return Err("a picture is not for the terminal; give -o FILE".into());
-    }
-    let mut stats = start_threads(job.threads)?;
-    let progress = Progress::new(job.quiet);
+    let mut run = Run::start(&job.output)?;
     let read = || job.input.mesh();
+    let finds_bends = job.edges.is_some();
     let Subject { scene, camera, notes } =
-        Subject::read(read, &job.view, job.edges, job.edges.is_some(), &progress, &mut stats)?;
+        Subject::read(read, &job.view, job.edges, finds_bends, &run.progress, &mut run.stats)?;
+    run.notes.add(notes);
     if job.options.fit_fov && camera.projection() == Projection::Orthographic {
         return Err(
             format!("{}; give --projection perspective", PreviewError::NoFieldOfView).into()
         );
     }
-    progress.stage("drawing");
+    run.progress.stage("drawing");
     let edges = job.edges.map(|lines| {
         let options = DrawOptions { lines, ..DrawOptions::default() };
         let scale = job.options.pixel_map(&scene, &camera).scale;
         // What is a millimeter on paper is about four pixels here.
         let drawn = draw(&scene, &camera, &options, scale / 4.0);
-        stats.add(&drawn);
+        run.stats.add(&drawn);
         drawn.drawing
     });
-    progress.stage("shading");
-    let mut seconds = stats.seconds;
-    let write = |out: &mut dyn io::Write| -> Result<(), PreviewError> {
-        seconds += preview::write(&scene, &camera, &job.options, edges.as_ref(), out)?;
-        Ok(())
-    };
-    match &job.path {
-        Some(path) => file::write_to_file(path, write)
-            .map_err(|error| format!("{}: {error}", path.display()))?,
-        None => file::write_to_stdout(write)?,
-    }
-    drop(progress);
-    seconds.total = start.elapsed().as_secs_f64();
-    stats.seconds = seconds;
-    if !job.quiet {
-        notes.warnings.iter().for_each(|warning| messages::warning(warning));
-        let (width, height) = job.options.size;
-        messages::plain(&notes.summary);
-        let name = job.path.as_deref().map_or("<stdout>".into(), Path::to_string_lossy);
-        messages::plain(format_args!(
-            "{name}  {width} x {height} pixels by {}, {:.2} s",
-            job.engine, seconds.total
-        ));
-    }
-    if job.stats {
-        stats.count(&scene);
-        stats.peak_bytes = peak_bytes();
-        let mut stats = serde_json::to_value(&stats)?;
-        stats["engine"] = job.engine.clone().into();
-        messages::plain(stats);
-    }
-    Ok(())
+    run.stats.count(MeshSize::of(&scene));
+    run.stats.engine = job.engine.clone().into();
+    let (width, height) = job.options.size;
+    let contents = format!(" by {}", job.engine);
+    let what = Written { paper: &format!("{width} x {height} pixels"), contents };
+    run.write(job.output.path.as_deref(), what, false, None, |out| {
+        preview::write(&scene, &camera, &job.options, edges.as_ref(), out)
+    })
 }

@@ -1,8 +1,9 @@
 //! The statistics of `--stats`: what a run counted and how long its stages took.
 
-use hiddenline::stages::draw::DrawOutput;
+use std::borrow::Cow;
+
+use hiddenline::stages::draw::{DrawOutput, MeshSize};
 use hiddenline::stages::engines::face::FaceWork;
-use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::estimate::PenWork;
 use hiddenline::stages::timing::Seconds;
 use serde::Serialize;
@@ -11,7 +12,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub(super) struct Stats {
     /// Name of the engine that drew.
-    pub(super) engine: &'static str,
+    pub(super) engine: Cow<'static, str>,
     /// Threads that worked.
     pub(super) threads: usize,
     /// Distinct vertices, after cleaning.
@@ -80,7 +81,7 @@ pub(super) struct Counts {
 impl Stats {
     /// Adds what drawing lines counted.
     pub(super) fn add(&mut self, drawn: &DrawOutput) {
-        self.engine = drawn.engine;
+        self.engine = drawn.engine.into();
         self.drawn_edges = drawn.n_lines;
         self.strokes = drawn.drawing.len();
         self.points = drawn.drawing.n_points();
@@ -95,14 +96,14 @@ impl Stats {
         self.counts.exact_predicates = drawn.n_exact;
     }
 
-    /// Adds what the scene is made of.
-    pub(super) fn count(&mut self, scene: &Scene) {
-        self.vertices = scene.mesh().positions().len();
-        self.faces = scene.mesh().n_faces();
-        self.triangles = scene.triangles().len();
-        self.edges = scene.topology().edges().len();
-        self.intersections = scene.intersections().lines().len();
-        self.counts.intersection_pairs = scene.intersections().n_pairs();
+    /// Adds the size of the mesh that is drawn.
+    pub(super) fn count(&mut self, size: MeshSize) {
+        self.vertices = size.vertices;
+        self.faces = size.faces;
+        self.triangles = size.triangles;
+        self.edges = size.edges;
+        self.intersections = size.intersections;
+        self.counts.intersection_pairs = size.intersection_pairs;
     }
 }
 

@@ -15,7 +15,7 @@ use crate::extent::Extent;
 use crate::model::bends::{Bend, bends};
 use crate::model::intersections::Intersections;
 use crate::model::mesh::Mesh;
-use crate::model::topology::Topology;
+use crate::model::topology::{EdgeUse, Topology};
 use crate::model::triangulate::{newell_normal, triangulate};
 use crate::predicates::PiercePoint;
 use glam::DVec3;
@@ -43,6 +43,23 @@ pub enum LineSource {
     Wire(u32),
 }
 
+/// The cosine of the angle between the normals of two faces that meet at an edge, as a fraction.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Dihedral {
+    dot: f64,
+    lengths: f64,
+}
+
+impl Dihedral {
+    /// Whether the normals make more than the angle with this cosine.
+    ///
+    /// Rounded, since the angle is a setting. A face without area has no normal and no crease.
+    #[inline]
+    pub fn is_above(self, cosine: f64) -> bool {
+        self.lengths > 0.0 && self.dot < cosine * self.lengths
+    }
+}
+
 /// A mesh with everything about it that does not depend on the view.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
@@ -55,6 +72,7 @@ pub struct Scene {
     /// All lines that are not edges of faces: intersections, then bends, then wires.
     lines: Vec<SceneLine>,
     normals: OnceLock<Vec<DVec3>>,
+    dihedrals: OnceLock<Vec<Dihedral>>,
     groups: OnceLock<Vec<u32>>,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
     points: Vec<DVec3>,
@@ -148,6 +166,11 @@ impl Scene {
         self.bends.binary_search_by_key(&face, of).is_ok()
     }
 
+    /// What the scene takes up of all these views together: the frame of a turntable.
+    pub fn extent_of_views(&self, cameras: &[Camera]) -> Extent {
+        cameras.iter().map(|camera| self.extent(camera)).fold(Extent::EMPTY, Extent::union)
+    }
+
     /// What of the image the scene takes up as `camera` sees it. O(vertices), in parallel; where the
     /// near plane cuts or the view is very wide, O(edges).
     pub fn extent(&self, camera: &Camera) -> Extent {
@@ -166,6 +189,17 @@ impl Scene {
         computed_once(&self.normals, || {
             let faces = (0..self.mesh.n_faces() as u32).into_par_iter();
             faces.map(|face| newell_normal(self.mesh.positions(), self.mesh.face(face))).collect()
+        })
+    }
+
+    /// At each edge, the angle between its two faces, where one of them is turned over if they are wound
+    /// against each other; none above 0° at edges of more or fewer faces. Computed when first asked for;
+    /// O(corners), in parallel.
+    pub fn dihedrals(&self) -> &[Dihedral] {
+        computed_once(&self.dihedrals, || {
+            let normals = self.normals();
+            let edges = (0..self.topology.edges().len() as u32).into_par_iter().with_min_len(4096);
+            edges.map(|edge| dihedral(self.topology.uses(edge), normals)).collect()
         })
     }
 
@@ -207,6 +241,13 @@ impl Scene {
         let number = (line as usize).checked_sub(self.topology.edges().len())?;
         self.lines.get(number).map(|line| line.source)
     }
+}
+
+fn dihedral(uses: &[EdgeUse], normals: &[DVec3]) -> Dihedral {
+    let &[first, second] = uses else { return Dihedral::default() };
+    let [a, b] = [first, second].map(|used| normals[used.face() as usize]);
+    let dot = if first.runs_upwards() == second.runs_upwards() { -a.dot(b) } else { a.dot(b) };
+    Dihedral { dot, lengths: a.length() * b.length() }
 }
 
 /// The value of a cell, computed if it is empty.

@@ -1,10 +1,10 @@
 //! Which pen draws what.
 
-use crate::draw::HiddenLines;
 use std::borrow::Cow;
 
+use crate::classify::LineSelection;
 use crate::plot::{Layer, Pen, Polylines};
-use crate::strokes::{Stroke, StrokeKind};
+use crate::strokes::{HiddenLines, Stroke, StrokeKind};
 
 use super::PlotOptions;
 
@@ -86,6 +86,58 @@ impl LayerControls {
             }
         }
         Some(format!("{label} {name}"))
+    }
+}
+
+/// Colors of pens that are given without one, by number.
+const PALETTE: [&str; 8] =
+    ["#000000", "#808080", "#c00000", "#0000c0", "#008000", "#c06000", "#8000a0", "#0090a0"];
+
+/// Nearly black: programs that tell pens by color take it for another one than the visible lines'.
+const OUTLINE_COLOR: &str = "#101010";
+
+/// Blue: easily told from the black of upper sides, by people and by programs.
+const UNDERSIDE_COLOR: &str = "#0000c0";
+
+/// The color of pen `number`, counted from 1, unless it is given another one.
+pub fn default_pen_color(number: u32) -> &'static str {
+    PALETTE[number.saturating_sub(1) as usize % PALETTE.len()]
+}
+
+/// Adds the usual pens of a drawing of models to `rules`, unless these have some: one twice as wide
+/// for the outline, if other lines are drawn too, and a gray one for each level of hidden lines, the
+/// paler the more often they are covered.
+pub fn with_line_pens(
+    mut rules: Vec<PenRule>,
+    lines: LineSelection,
+    hidden_levels: Option<u32>,
+    width_mm: f64,
+) -> Vec<PenRule> {
+    if lines.has_outline() && lines.has_more_than_outline() {
+        add_pen(&mut rules, PenRole::Outline, 2.0 * width_mm, OUTLINE_COLOR.into());
+    }
+    let levels = hidden_levels.unwrap_or(0);
+    for level in 1..=levels {
+        let gray = 0x80 + (level - 1) * 0x60 / levels;
+        let color = format!("#{gray:02x}{gray:02x}{gray:02x}");
+        add_pen(&mut rules, PenRole::HiddenLevel(level), width_mm, color);
+    }
+    rules
+}
+
+/// Adds the usual pen of the underside of a surface to `rules`, unless these have one.
+pub fn with_underside_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
+    add_pen(&mut rules, PenRole::Underside, width_mm, UNDERSIDE_COLOR.into());
+    rules
+}
+
+/// Adds a pen unless there is a rule for what it draws. The first number is left for visible lines.
+fn add_pen(rules: &mut Vec<PenRule>, drawn: PenRole, width_mm: f64, color: String) {
+    if rules.iter().all(|rule| rule.drawn != drawn) {
+        let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
+        let number = (2..).find(is_free).unwrap_or(2);
+        let (pen, controls) = (Pen { width_mm, color }, LayerControls::default());
+        rules.push(PenRule { drawn, number, pen, controls });
     }
 }
 

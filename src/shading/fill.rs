@@ -22,7 +22,7 @@ use crate::engines::face::{
 };
 use crate::model::mesh::Part;
 use crate::model::scene::Scene;
-use crate::plot::Fills;
+use crate::plot::{FillLayer, Fills};
 use crate::shading::light::{
     DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes,
 };
@@ -93,17 +93,6 @@ pub enum FillError {
     /// A palette is for shaded pictures.
     #[error("order, depth and splits are told by many colors; leave out the palette")]
     DebugInks,
-}
-
-/// One layer of areas.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FillLayer {
-    /// What the layer holds, as a word.
-    pub name: String,
-    /// The ink, or that of the first area.
-    pub color: [u8; 3],
-    /// The areas in image coordinates.
-    pub fills: Fills,
 }
 
 /// A filled picture, in image coordinates.

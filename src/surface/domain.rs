@@ -32,8 +32,8 @@ pub struct TrimmedGrid {
 }
 
 impl TrimmedGrid {
-    /// Samples `formula` as [`Grid::sample`] does, but only where `domain` is true and the formula
-    /// has a value. Features narrower than a cell may be missed.
+    /// Samples `formula` as [`Grid::sample`] does, but only where `domain` is true, if there is one, and the
+    /// formula has a value. Features narrower than a cell may be missed.
     ///
     /// O(samples + cut edges · `HALVINGS`), in parallel.
     ///
@@ -41,7 +41,7 @@ impl TrimmedGrid {
     /// As [`Grid::sample`].
     pub fn sample(
         formula: &Formula,
-        domain: &Formula,
+        domain: Option<&Formula>,
         x: (f64, f64),
         y: (f64, f64),
         n: (usize, usize),
@@ -49,15 +49,17 @@ impl TrimmedGrid {
         let whole = Grid::sample(formula, x, y, n)?;
         let (xs, ys) = (whole.xs().to_vec(), whole.ys().to_vec());
         let mut zs = whole.zs().to_vec();
-        zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
-            let mut holds = vec![0.0; xs.len()];
-            domain.values(&xs, &vec![y; xs.len()], &mut holds);
-            for (z, holds) in row.iter_mut().zip(holds) {
-                if !is_true(holds) {
-                    *z = f64::NAN;
+        if let Some(domain) = domain {
+            zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
+                let mut holds = vec![0.0; xs.len()];
+                domain.values(&xs, &vec![y; xs.len()], &mut holds);
+                for (z, holds) in row.iter_mut().zip(holds) {
+                    if !is_true(holds) {
+                        *z = f64::NAN;
+                    }
                 }
-            }
-        });
+            });
+        }
         let grid = Grid::new(xs, ys, zs)?;
         let rim = (0..n.1 as u32)
             .into_par_iter()
@@ -147,7 +149,13 @@ fn leaving_edges(grid: &Grid, j: u32) -> Vec<[u32; 2]> {
 }
 
 /// The last point on the way from the first sample to the second that is known to be inside.
-fn last_inside(grid: &Grid, formula: &Formula, domain: &Formula, [a, b]: [u32; 2]) -> DVec3 {
+fn last_inside(
+    grid: &Grid,
+    formula: &Formula,
+    domain: Option<&Formula>,
+    [a, b]: [u32; 2],
+) -> DVec3 {
+    let holds = |p: DVec3| domain.is_none_or(|domain| is_true(domain.value(p.x, p.y)));
     let start = grid.point(a);
     let way = (grid.point(b) - start).with_z(0.0);
     let (mut last, mut low, mut high) = (start, 0.0, 1.0);
@@ -155,7 +163,7 @@ fn last_inside(grid: &Grid, formula: &Formula, domain: &Formula, [a, b]: [u32; 2
         let middle = 0.5 * (low + high);
         let p = start + middle * way;
         let z = formula.value(p.x, p.y);
-        if z.is_finite() && is_true(domain.value(p.x, p.y)) {
+        if z.is_finite() && holds(p) {
             (low, last) = (middle, p.with_z(z + 0.0));
         } else {
             high = middle;

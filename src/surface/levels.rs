@@ -15,7 +15,7 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::lined_mesh::{LinedMesh, SurfaceLine};
+use super::lined_mesh::{LinedMesh, SurfaceLine, sorted};
 use crate::strokes::StrokeKind;
 
 impl LinedMesh {
@@ -62,14 +62,6 @@ impl LinedMesh {
         lines.extend(curves.into_iter().map(|ends| SurfaceLine { ends, kind: StrokeKind::Level }));
         (self.positions, self.triangles, self.lines) = (cutter.positions, triangles, lines);
     }
-}
-
-/// The finite heights in rising order, each once.
-pub(super) fn sorted(levels: &[f64]) -> Vec<f64> {
-    let mut levels: Vec<f64> = levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
-    levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    levels
 }
 
 /// The indices of the levels strictly between two heights.

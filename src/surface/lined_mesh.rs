@@ -4,7 +4,6 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::Grid;
-use super::levels::sorted;
 use crate::classify::SelectedLine;
 use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
 use crate::model::scene::Scene;
@@ -189,6 +188,14 @@ impl LinedMesh {
             .collect();
         Ok(LinedScene { scene, lines })
     }
+}
+
+/// The finite heights in rising order, each once.
+pub(super) fn sorted(levels: &[f64]) -> Vec<f64> {
+    let mut levels: Vec<f64> = levels.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    levels
 }
 
 /// The point about which a cell is split: that of the bilinear patch over its corners, given counter-

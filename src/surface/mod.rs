@@ -11,6 +11,8 @@ mod levels;
 mod lined_mesh;
 #[cfg(feature = "points")]
 mod points;
+mod sampled;
+mod source;
 
 pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
@@ -19,3 +21,5 @@ pub use lattice_extent::lattice_extent;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
 #[cfg(feature = "points")]
 pub use points::{Duplicates, PointsError, ScatteredPoints, delaunay};
+pub use sampled::{Lattice, SampledSurface, SamplingError};
+pub use source::{Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, Surface};

@@ -2,9 +2,10 @@
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
-use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions, HiddenLines};
+use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions};
 use hiddenline::stages::engines::edge::LineEngine;
 use hiddenline::stages::page::Dash;
+use hiddenline::stages::strokes::HiddenLines;
 
 use crate::cli::plotting::Plotting;
 use crate::cli::{config, values};

@@ -2,12 +2,13 @@
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::Titles;
-use hiddenline::stages::chain::grid_lines::Lines;
+use hiddenline::stages::draw::surface::{Levels, SurfaceEngine, SurfaceLines};
 use hiddenline::stages::engines::surface::CellOrder;
+use hiddenline::stages::surface::DEFAULT_SAMPLES;
+use hiddenline::stages::write::Format;
 
 use super::Job;
-use super::engine::EngineName;
-use super::sheet_args::{DEFAULT_SAMPLES, SheetArgs};
+use super::sheet_args::SheetArgs;
 use super::sheets::{Aspect, Input};
 use crate::cli::camera::CameraArgs;
 use crate::cli::output::{OutputArgs, check_place};
@@ -146,18 +147,32 @@ enum LineName {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum EngineName {
+    Auto,
+    MaxMin,
+    FloatingHorizon,
+    Roberts,
+    Appel,
+}
+
+impl EngineName {
+    fn library(self) -> SurfaceEngine {
+        match self {
+            Self::Auto => SurfaceEngine::Auto,
+            Self::MaxMin => SurfaceEngine::MaxMin,
+            Self::FloatingHorizon => SurfaceEngine::FloatingHorizon,
+            Self::Roberts => SurfaceEngine::Roberts,
+            Self::Appel => SurfaceEngine::Appel,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum OrderName {
     /// Row by row, away from the eye
     Rows,
     /// Diagonal by diagonal, as Cantor counts pairs
     Cantor,
-}
-
-/// Which level curves, heights as in the formula or file.
-#[derive(Clone)]
-pub(super) enum Levels {
-    Count(u16),
-    At(Vec<f64>),
 }
 
 fn levels(text: &str) -> Result<Levels, String> {
@@ -186,16 +201,11 @@ impl SurfaceArgs {
         let named = if lines.lines.is_empty() { vec![default_line] } else { lines.lines };
         let has = |name| named.contains(&name);
         let both = has(LineName::Both);
-        let along = Lines {
-            along_x: both || has(LineName::X),
-            along_y: both || has(LineName::Y),
-            every: lines.every,
-            side: None,
-            separate: lines.exact,
-        };
+        let along_x = both || has(LineName::X);
+        let along_y = both || has(LineName::Y);
         let only_grid_lines =
             named.iter().all(|n| matches!(n, LineName::X | LineName::Y | LineName::Both));
-        if matches!(sheets.input, Input::Points(_)) && (along.along_x || along.along_y) {
+        if matches!(sheets.input, Input::Points(_)) && (along_x || along_y) {
             return Err("scattered points have no grid lines: give --lines mesh or levels".into());
         }
         if lines.levels.is_some() && !has(LineName::Levels) {
@@ -214,7 +224,7 @@ impl SurfaceArgs {
             Input::Points(_) | Input::Parametric { .. } => false,
         };
         match lines.engine {
-            EngineName::FloatingHorizon if along.along_x == along.along_y || !only_grid_lines => {
+            EngineName::FloatingHorizon if along_x == along_y || !only_grid_lines => {
                 return Err(
                     "the floating horizon draws one family: give --lines x or --lines y".into()
                 );
@@ -245,24 +255,33 @@ impl SurfaceArgs {
         let output = output.options(lines.exact)?;
         let inputs = sheets.file().into_iter().chain(view.input()).chain(output.inputs.clone());
         check_place(output.path.as_deref(), inputs)?;
-        Ok(Job {
-            sheets,
-            view,
-            lines: along,
-            levels: has(LineName::Levels)
-                .then(|| lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS))),
-            folds: has(LineName::Silhouette),
-            intersections: has(LineName::Intersection),
+        let titles = if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) };
+        let levels = lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS));
+        let lines = SurfaceLines {
+            along_x,
+            along_y,
+            every: lines.every,
+            levels: has(LineName::Levels).then_some(levels),
+            silhouette: has(LineName::Silhouette),
             border: has(LineName::Border),
-            all_edges: has(LineName::Mesh),
-            engine: lines.engine,
+            intersections: has(LineName::Intersection),
+            mesh: has(LineName::Mesh),
+            smoothness_mm: if lines.exact { 0.0 } else { lines.smoothness },
+            underside: lines.underside,
+            exact: lines.exact,
+            engine: lines.engine.library(),
             order: lines.order.map(|order| match order {
                 OrderName::Rows => CellOrder::Rows,
                 OrderName::Cantor => CellOrder::Diagonals,
             }),
-            smoothness_mm: if lines.exact { 0.0 } else { lines.smoothness },
-            underside: lines.underside,
-            titles: if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) },
+            axes: titles,
+            apart_by_kind: output.format == Format::Json,
+            ..SurfaceLines::default()
+        };
+        Ok(Job {
+            sheets,
+            view,
+            lines,
             page: output.target.within_reach(page.options()),
             unit_mm: page.unit_mm(),
             pen_width_mm: page.pen_width_mm(),

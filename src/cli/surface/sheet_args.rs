@@ -10,9 +10,6 @@ use super::sheets::{Aspect, Input, Sheets};
 use crate::cli::formulas::in_formula;
 use crate::cli::values;
 
-/// Samples along each axis, unless given.
-pub(in crate::cli) const DEFAULT_SAMPLES: usize = 81;
-
 /// Everything but the formulas, which `surface` takes without the name of an option; each command
 /// that has this has an argument of the name `expression` for them.
 #[derive(Args)]
@@ -116,8 +113,9 @@ impl SheetArgs {
         } else if let Some(texts) = self.parametric {
             default_aspect = Aspect::Data;
             let formulas = parsed(&texts, Variables::Parameters)?;
+            let formulas = formulas.try_into().map_err(|_| "give three formulas")?;
             let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
-            Input::Parametric { formulas, u, v, samples }
+            Input::Parametric { formulas: Box::new(formulas), u, v, samples }
         } else if !texts.is_empty() {
             let formulas = parsed(&texts, Variables::Plane)?;
             let domain = self.domain.map(|text| {

@@ -24,7 +24,7 @@ use std::sync::atomic::AtomicU8;
 
 use rayon::prelude::*;
 
-use super::SurfaceError;
+use super::HorizonError;
 use super::cells::{First, GridPart};
 use super::max_min::{bounds, parts};
 use super::pieces::{GridPieces, HIDDEN, UPPER};
@@ -50,9 +50,9 @@ pub enum Family {
 ///
 /// # Errors
 /// Holes.
-pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces, SurfaceError> {
+pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces, HorizonError> {
     if grid.holes() != Holes::None {
-        return Err(SurfaceError::Holes);
+        return Err(HorizonError::Holes);
     }
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let (n_x_edges, n_y_edges) = (ny * (nx - 1), nx * (ny - 1));

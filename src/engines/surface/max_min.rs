@@ -52,7 +52,7 @@ use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
 use super::plan_predicates::{PlanSight, over_plane};
 use super::segment::HorizonPlane;
 use super::strip::HorizonStrip;
-use super::{CellOrder, SurfaceError};
+use super::{CellOrder, HorizonError};
 use crate::camera::{Camera, Projection};
 use crate::surface::{Grid, Holes};
 
@@ -100,7 +100,7 @@ pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
 ///
 /// # Errors
 /// Holes, or an eye on the surface.
-pub fn solve(grid: &Grid, camera: &Camera, order: CellOrder) -> Result<GridPieces, SurfaceError> {
+pub fn solve(grid: &Grid, camera: &Camera, order: CellOrder) -> Result<GridPieces, HorizonError> {
     solve_in_strips(grid, camera, order, CELLS_PER_STRIP)
 }
 
@@ -114,9 +114,9 @@ pub fn solve_in_strips(
     camera: &Camera,
     order: CellOrder,
     cells_per_strip: usize,
-) -> Result<GridPieces, SurfaceError> {
+) -> Result<GridPieces, HorizonError> {
     if grid.holes() != Holes::None {
-        return Err(SurfaceError::Holes);
+        return Err(HorizonError::Holes);
     }
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let n_edges = ny * (nx - 1) + nx * (ny - 1);
@@ -165,7 +165,7 @@ pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {
 
 /// Which horizons there are, (upper, lower). With the eye over the domain one of them starts at
 /// infinity: nothing is seen from the other side.
-fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), SurfaceError> {
+fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), HorizonError> {
     let cell = |values: &[f64], at: f64| {
         let inside = values[0] <= at && at <= values[values.len() - 1];
         inside.then(|| values[1..values.len() - 1].partition_point(|&value| value <= at))
@@ -185,7 +185,7 @@ fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), SurfaceErro
     match over {
         Ordering::Greater => Ok((true, false)),
         Ordering::Less => Ok((false, true)),
-        Ordering::Equal => Err(SurfaceError::EyeOnSurface),
+        Ordering::Equal => Err(HorizonError::EyeOnSurface),
     }
 }
 

@@ -34,7 +34,7 @@ pub enum CellOrder {
 
 /// Why a surface cannot be drawn by the engines of this folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum SurfaceError {
+pub enum HorizonError {
     /// The eye lies on the surface.
     #[error("the eye lies on the surface; move it up or down")]
     EyeOnSurface,

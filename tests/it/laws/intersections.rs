@@ -10,10 +10,10 @@ use crate::scenes::{
 };
 use glam::DVec3;
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
-use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::stages::draw::{DrawOptions, draw};
 use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::model::scene::Scene;
-use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::strokes::{HiddenLines, StrokeKind};
 
 const INTERSECTIONS: LineSelection = LineSelection::NONE.with(StrokeKind::Intersection);
 
@@ -299,7 +299,7 @@ fn a_wall_crosses_a_floor_also_where_that_runs_along_its_edges() {
     let sunk = model.seen_by("sunk wall", from_above());
     let scene = built(&sunk);
     assert_same_lines("sunk wall", &lines(&scene), &[[a.into(), b.into()]]);
-    // Drawn once, also with all edges.
+    // DrawOutput once, also with all edges.
     let with_edges = LineSelection::all_edges().with(StrokeKind::Intersection);
     for (selection, n) in [(INTERSECTIONS, 1), (with_edges, 0), (LineSelection::default(), 1)] {
         let view = ViewedScene::new(&scene, &camera(&sunk), selection, 30.0);

@@ -19,6 +19,7 @@ mod outline;
 mod predicates;
 mod short_strokes;
 mod strokes;
+mod turntable;
 mod views;
 mod wires;
 

@@ -3,9 +3,10 @@
 use glam::{DVec3, dvec2, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::LineSelection;
-use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::stages::draw::{DrawOptions, draw};
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::HiddenLines;
 
 /// Strokes as (visible, first x, last x) of the level lines of some faces, seen from above, one
 /// millimeter to the unit.

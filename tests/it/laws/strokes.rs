@@ -3,12 +3,12 @@
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
-use hiddenline::stages::draw::{DrawOptions, HiddenLines, draw};
+use hiddenline::stages::draw::{DrawOptions, draw};
 use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::predicates::Sign;
-use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::strokes::{HiddenLines, Strokes};
 
 const BOX_FACES: [[u32; 4]; 6] =
     [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

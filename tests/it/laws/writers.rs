@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3, dvec2};
 use hiddenline::stages::camera::{Camera, Projection};
-use hiddenline::stages::draw::HiddenLines;
 use hiddenline::stages::page::{
     Dash, Orientation, Page, PageError, PageOptions, Paper, PlacedPlot, Placement, PlotOptions,
 };
 use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
+use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::strokes::{StrokeKind, Strokes};
 use hiddenline::stages::write::png::{PngError, Resolution};
 use hiddenline::stages::write::svg::StrokeElement;

@@ -44,7 +44,7 @@ fn plot(filled: &Filled, camera: &Camera, options: &PageOptions, seam_mm: f64) -
         title: String::new(),
         source: String::new(),
     };
-    let placed = page.plot(&Strokes::default(), plot).with_fills(&page, filled, seam_mm);
+    let placed = page.plot(&Strokes::default(), plot).with_fills(&page, &filled.layers, seam_mm);
     (placed.plot, placed.cropped)
 }
 

@@ -133,8 +133,13 @@ fn the_last_line_of_every_k_reaches_the_rim_of_a_domain() {
     for (domain, along_rows, expected) in
         [("x <= 2.25", true, [0.0, 3.0, 4.0]), ("y <= 2.25", false, [0.0, 3.0, 5.0])]
     {
-        let grid =
-            TrimmedGrid::sample(&formula("0"), &formula(domain), (0.0, 5.0), (0.0, 4.0), (6, 5));
+        let grid = TrimmedGrid::sample(
+            &formula("0"),
+            Some(&formula(domain)),
+            (0.0, 5.0),
+            (0.0, 4.0),
+            (6, 5),
+        );
         let lines = LatticeLines { along_rows, along_columns: !along_rows, every: 3, ..NO_LINES };
         let mut mesh = LinedMesh::default();
         mesh.push_trimmed(&grid.expect("a grid"), &lines);

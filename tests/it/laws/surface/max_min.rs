@@ -5,7 +5,7 @@ use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::ViewedScene;
 use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve as engine};
 use hiddenline::stages::engines::surface::{
-    CellOrder, GridPieces, SurfaceError, SurfaceSide, max_min,
+    CellOrder, GridPieces, HorizonError, SurfaceSide, max_min,
 };
 use hiddenline::stages::surface::{Grid, LatticeLines, LinedMesh};
 
@@ -87,7 +87,7 @@ fn check(grid: &Grid, camera: &Camera, name: &str) -> bool {
     };
     let by_rows = match max_min::solve(grid, camera, CellOrder::Rows) {
         Ok(pieces) => pieces,
-        Err(SurfaceError::EyeOnSurface) => return false,
+        Err(HorizonError::EyeOnSurface) => return false,
         Err(error) => panic!("{name}: {error}"),
     };
     let by_diagonals = max_min::solve(grid, camera, CellOrder::Diagonals).expect("as by rows");
@@ -224,8 +224,8 @@ fn an_eye_on_the_surface_and_holes_are_refused() {
     let camera = camera(dvec3(0.75, 0.25, 0.25), DVec3::ZERO, PERSPECTIVE);
     let solve =
         |grid: &Grid| max_min::solve(grid, &camera, CellOrder::Rows).expect_err("no drawing");
-    assert_eq!(solve(&grid(1.0)), SurfaceError::EyeOnSurface);
-    assert_eq!(solve(&grid(f64::NAN)), SurfaceError::Holes);
+    assert_eq!(solve(&grid(1.0)), HorizonError::EyeOnSurface);
+    assert_eq!(solve(&grid(f64::NAN)), HorizonError::Holes);
 }
 
 #[test]

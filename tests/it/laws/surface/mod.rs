@@ -2,6 +2,7 @@
 
 mod brute;
 mod damage;
+mod drawing;
 mod floating_horizon;
 mod height_files;
 mod level_lengths;

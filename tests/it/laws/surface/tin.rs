@@ -161,7 +161,8 @@ fn grids_with_level_curves_equal_all_pairs() {
 fn a_disk_is_drawn_by_horizons() {
     let formula = |text| Formula::parse(text, Variables::Plane).expect("a formula");
     let (z, disk) = (formula("sin(3*x)*cos(2*y)"), formula("x^2+y^2<=1"));
-    let grid = TrimmedGrid::sample(&z, &disk, (-1.5, 1.5), (-1.5, 1.5), (16, 16)).expect("a grid");
+    let grid =
+        TrimmedGrid::sample(&z, Some(&disk), (-1.5, 1.5), (-1.5, 1.5), (16, 16)).expect("a grid");
     let mut mesh = LinedMesh::default();
     mesh.push_trimmed(&grid, &ALL);
     let surface = mesh.into_scene().expect("a scene");
@@ -263,7 +264,7 @@ fn a_ball_of_two_sheets_is_drawn_by_horizons() {
     let disk = formula("1");
     let sheets = ["sqrt(1-x^2-y^2)", "-sqrt(1-x^2-y^2)"].map(|text| {
         let (x, n) = ((-1.1, 1.1), (12, 12));
-        TrimmedGrid::sample(&formula(text), &disk, x, x, n).expect("a grid")
+        TrimmedGrid::sample(&formula(text), Some(&disk), x, x, n).expect("a grid")
     });
     let [mut upper, mut lower] = sheets;
     assert!(upper.meet_at_rim(&mut lower, 1e-6) > 12);

@@ -1,0 +1,278 @@
+//! From a surface and a view to strokes on a page.
+//!
+//! ```text
+//!   Surface ─► samples, as fine as smooth lines need on paper
+//!                 │
+//!                 ├─ one grid, grid lines only ─► engine for grids ─┐
+//!                 └─ all else ─► mesh with lines ─► meshed::draw ───┴─► strokes, with axes
+//! ```
+
+mod error;
+mod grid;
+mod options;
+mod smoothness;
+
+use glam::{DVec2, DVec3};
+
+pub use self::error::{MAX_TRIANGLES, NoLevels, SurfaceError, SurfaceNote};
+pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLines};
+
+use self::grid::{draw_grid, grid_to_draw};
+use self::smoothness::{SmoothSurface, sample};
+use super::{DrawOutput, MeshSize, meshed};
+use crate::axes::{axes, missing};
+use crate::camera::framing::View;
+use crate::camera::{Camera, Projection};
+use crate::engines::edge::LineEngine;
+use crate::engines::surface::max_min;
+use crate::extent::Extent;
+use crate::page::{Page, PageOptions};
+use crate::strokes::Strokes;
+use crate::surface::{LatticeLines, LinedScene, SampledSurface, Surface};
+use crate::timing::{Seconds, timed};
+
+/// More of the paper covered with lines than this looks like a sheet of ink.
+const CROWDED: f64 = 0.5;
+
+/// How much of the paper is covered by lines that are easily told apart.
+const WELL_COVERED: f64 = 0.25;
+
+/// Drawings with at most so many points are joined again in a moment.
+const FEW_POINTS: usize = 12_000;
+
+/// A drawing of a surface, with the page that it was drawn for.
+#[derive(Debug, Clone)]
+pub struct SurfaceDrawing {
+    /// The strokes, with the axes, and what drawing counted.
+    pub drawn: DrawOutput,
+    /// How large the mesh is that was drawn.
+    pub size: MeshSize,
+    /// From where the surface is seen.
+    pub camera: Camera,
+    /// The page.
+    pub page: Page,
+    /// What the surface and its axes take up of the image.
+    pub extent: Extent,
+    /// How many samples there are, in words.
+    pub samples: String,
+    /// What is worth knowing about the drawing.
+    pub notes: Vec<SurfaceNote>,
+    /// Whether the strokes run along the lines of a grid already, with short pen-up travel and none on
+    /// another, and are too many to be joined and ordered again in a moment.
+    pub is_ordered: bool,
+    ink: Ink,
+}
+
+/// How much of the image grid lines cover, without axes.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ink {
+    /// Every so many-th line of the surface's own samples is drawn; 0 if no families of grid lines are.
+    every: usize,
+    /// Sum of the lengths of all strokes, in millimeters.
+    length_mm: f64,
+    /// Size of the drawing, in millimeters.
+    size_mm: DVec2,
+}
+
+/// Draws the lines of a surface as `view` shows it, for a page.
+///
+/// The surface is sampled as finely as lines need to be smooth on paper. The visible parts are exact
+/// for the triangles between the samples.
+///
+/// # Errors
+/// See [`SurfaceError`].
+///
+/// ```
+/// use hiddenline::{PageOptions, View};
+/// use hiddenline::stages::draw::surface::{SurfaceLines, draw_surface};
+/// use hiddenline::stages::surface::Surface;
+///
+/// let surface = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0).samples(41, 41);
+/// let (view, page) = (View::default(), PageOptions::default());
+/// let drawing = draw_surface(&surface, &view, &SurfaceLines::default(), &page)?;
+/// assert!(!drawing.drawn.drawing.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn draw_surface(
+    surface: &Surface,
+    view: &View,
+    lines: &SurfaceLines,
+    page: &PageOptions,
+) -> Result<SurfaceDrawing, SurfaceError> {
+    let mut seconds = Seconds::default();
+    let SmoothSurface { surface, camera, refined, deviation_mm } =
+        timed(&mut seconds.read, || sample(surface, view, lines, page))?;
+    let mut notes = Vec::new();
+    if deviation_mm > lines.smoothness_mm {
+        notes.push(SurfaceNote::OffFunction { deviation_mm });
+    }
+    if surface.n_rim_points_joined() > 0 {
+        notes.push(SurfaceNote::RimsJoined(surface.n_rim_points_joined()));
+    }
+    if let Some(none) = without_levels(&surface, lines) {
+        if !lines.has_grid_lines() && !lines.has_mesh_lines() {
+            return Err(none.into());
+        }
+        notes.push(SurfaceNote::NoLevels(none));
+    }
+    let every = lines.every.saturating_mul(refined);
+    let grid = grid_to_draw(&surface, lines, &camera)?;
+    if grid.is_none() && lines.order.is_some() {
+        return Err(SurfaceError::Order);
+    }
+    let lined = match grid {
+        Some(_) => None,
+        None => Some(timed(&mut seconds.topology, || lined(&surface, lines, every))?),
+    };
+    let extent = match &lined {
+        Some(lined) => lined.scene.extent(&camera),
+        None => surface.extent(&camera),
+    };
+    let around = lines
+        .axes
+        .as_ref()
+        .map(|titles| axes(&extent, surface.bounds(), surface.z_factor(), &camera, titles));
+    let around = around.unwrap_or_default();
+    let extent = extent.union(around.extent(&camera));
+    let page = Page::place(&extent, &camera, page)?;
+    let (mut drawn, size) = match (grid, &lined) {
+        (Some(grid), _) => draw_grid(grid, &camera, lines, every)?,
+        (None, Some(lined)) => {
+            let scale = page.mm_per_image_unit();
+            let drawn = meshed::draw(lined, &camera, &meshed_options(lines), scale);
+            if lines.engine == SurfaceEngine::MaxMin && drawn.engine != max_min::NAME {
+                return Err(SurfaceError::MaxMin);
+            }
+            (drawn, MeshSize::of(&lined.scene))
+        }
+        (None, None) => Default::default(),
+    };
+    drawn.seconds += seconds;
+    let drawing = &mut drawn.drawing;
+    let ink = Ink::of(drawing, lines, &page);
+    if let Some(titles) = lines.axes.as_ref().filter(|_| !drawing.is_empty()) {
+        drawing.append(&around);
+        let missing = missing(&[titles.axes.join(""), titles.drawing.clone()].concat());
+        if !missing.is_empty() {
+            notes.push(SurfaceNote::MissingLetters(missing));
+        }
+    }
+    let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
+    let is_ordered = grid.is_some() && !is_edge_on && drawing.n_points() > FEW_POINTS;
+    let samples = surface.to_string();
+    Ok(SurfaceDrawing { drawn, size, camera, page, extent, samples, notes, is_ordered, ink })
+}
+
+impl SurfaceDrawing {
+    /// Whether lines are so close that they flow into each other when drawn with a pen of this width:
+    /// then what [`SurfaceLines::every`] should be to tell them apart.
+    pub fn crowded(&self, pen_width_mm: f64) -> Option<usize> {
+        let Ink { every, length_mm, size_mm } = self.ink;
+        let covered = length_mm * pen_width_mm / (size_mm.x * size_mm.y);
+        // A flat surface seen edge-on is a line; there is nothing to tell apart.
+        let is_area = size_mm.min_element() > pen_width_mm;
+        (every > 0 && is_area && covered > CROWDED)
+            .then(|| (every as f64 * covered / WELL_COVERED).ceil() as usize)
+    }
+}
+
+impl Ink {
+    fn of(drawing: &Strokes, lines: &SurfaceLines, page: &Page) -> Self {
+        let Some((low, high)) = drawing.bounds() else { return Self::default() };
+        if lines.exact || !lines.has_grid_lines() {
+            return Self::default();
+        }
+        let pairs = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+        let length: f64 = drawing.iter().map(|stroke| pairs(stroke.points)).sum();
+        let scale = page.mm_per_image_unit();
+        Self { every: lines.every, length_mm: length * scale, size_mm: (high - low) * scale }
+    }
+}
+
+/// Why there are no level curves, if they are to be drawn.
+fn without_levels(surface: &SampledSurface, lines: &SurfaceLines) -> Option<NoLevels> {
+    let levels = lines.levels.as_ref()?;
+    let (low, high) = surface.bounds();
+    let (one, other) = match surface.z_factor() {
+        0.0 => (0.0, 0.0),
+        factor => (low.z / factor + 0.0, high.z / factor + 0.0),
+    };
+    let range = one.min(other)..=one.max(other);
+    match levels {
+        _ if low.z == high.z => Some(NoLevels::Level { height: brief(*range.start()) }),
+        Levels::At(heights) if heights.iter().all(|z| !range.contains(z)) => {
+            let (low, high) = (brief(*range.start()), brief(*range.end()));
+            Some(NoLevels::OutOfRange { low, high })
+        }
+        _ => None,
+    }
+}
+
+/// A number with at most six significant digits.
+fn brief(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
+}
+
+/// The surface as a scene, with every `every`-th grid line of a family and its level curves.
+fn lined(
+    surface: &SampledSurface,
+    lines: &SurfaceLines,
+    every: usize,
+) -> Result<LinedScene, SurfaceError> {
+    let lattices = surface.lattices();
+    // Scattered points have no grid lines.
+    let triangles = lines.mesh || lattices.is_empty() && lines.has_grid_lines();
+    let chosen =
+        LatticeLines { along_rows: lines.along_x, along_columns: lines.along_y, every, triangles };
+    let check = |n: u64| {
+        if n > MAX_TRIANGLES { Err(SurfaceError::TooManyTriangles(n)) } else { Ok(()) }
+    };
+    let cells = lattices
+        .iter()
+        .map(|lattice| (lattice.n_columns - 1) as u64 * lattice.n_rows().saturating_sub(1) as u64);
+    check(2 * cells.sum::<u64>())?;
+    let levels = lines.levels.as_ref().map(|levels| heights(levels, surface));
+    let split_at = levels.as_deref().filter(|_| !lines.exact).unwrap_or_default();
+    let mut mesh = surface.lined(&chosen, split_at);
+    if mesh.n_triangles() == 0 {
+        return Err(SurfaceError::NoCells);
+    }
+    if let Some(levels) = &levels {
+        check(mesh.n_pieces_with_levels(levels))?;
+        mesh.add_levels(levels);
+    }
+    let LinedScene { scene, lines: drawn } = mesh.into_scene()?;
+    let scene = if lines.intersections { scene.with_intersections() } else { scene };
+    Ok(LinedScene { scene, lines: drawn })
+}
+
+/// The heights of level curves as they are drawn.
+fn heights(levels: &Levels, surface: &SampledSurface) -> Vec<f64> {
+    let (low, high): (DVec3, DVec3) = surface.bounds();
+    match levels {
+        Levels::Count(count) => {
+            let n = f64::from(*count) + 1.0;
+            (1..=*count).map(|k| low.z + (high.z - low.z) * f64::from(k) / n).collect()
+        }
+        Levels::At(heights) => heights.iter().map(|z| z * surface.z_factor()).collect(),
+    }
+}
+
+fn meshed_options(lines: &SurfaceLines) -> meshed::MeshedOptions {
+    meshed::MeshedOptions {
+        engine: match lines.engine {
+            SurfaceEngine::Roberts => LineEngine::Roberts,
+            SurfaceEngine::Appel => LineEngine::Appel,
+            SurfaceEngine::Auto | SurfaceEngine::MaxMin | SurfaceEngine::FloatingHorizon => {
+                LineEngine::Auto
+            }
+        },
+        folds: lines.silhouette,
+        intersections: lines.intersections,
+        border: lines.border,
+        exact: lines.exact,
+        underside: lines.underside,
+        apart_by_kind: lines.apart_by_kind,
+        shortest_stroke_mm: lines.shortest_stroke_mm,
+    }
+}

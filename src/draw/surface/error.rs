@@ -1,0 +1,115 @@
+//! Why a surface cannot be drawn, and what is worth knowing about a drawing.
+
+use thiserror::Error;
+
+use crate::camera::framing::ViewError;
+use crate::engines::surface::HorizonError;
+use crate::model::mesh::MeshError;
+use crate::page::PageError;
+use crate::surface::SamplingError;
+
+/// Most triangles that an engine for meshes is given: about 3 GB of memory.
+pub const MAX_TRIANGLES: u64 = 8_000_000;
+
+/// Why a surface cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SurfaceError {
+    /// The surface cannot be sampled.
+    #[error(transparent)]
+    Sampling(#[from] SamplingError),
+    /// The view makes no camera.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// The drawing cannot be placed on the page.
+    #[error(transparent)]
+    Page(#[from] PageError),
+    /// The samples make no mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The engine for grids cannot draw this surface.
+    #[error(transparent)]
+    Horizon(#[from] HorizonError),
+    /// There are samples, but no triangle between them.
+    #[error("no four neighboring samples have a height: nothing to draw")]
+    NoCells,
+    /// Too many for an engine for meshes.
+    #[error(
+        "the surface has {0} triangles, and its lines need an engine for meshes, which takes \
+         {MAX_TRIANGLES}"
+    )]
+    TooManyTriangles(u64),
+    /// Level curves alone are to be drawn, and there are none.
+    #[error(transparent)]
+    NoLevels(#[from] NoLevels),
+    /// The floating horizon needs one family of lines.
+    #[error("the floating horizon draws one family of grid lines and nothing else")]
+    OneFamily,
+    /// The floating horizon needs one grid.
+    #[error("the floating horizon draws one surface z = f(x, y) over a rectangle")]
+    OneGrid,
+    /// Max-min cannot draw this surface.
+    #[error(
+        "max-min draws one surface z = f(x, y) without holes over a convex part of the plane, or two \
+         that meet along their border, seen from outside and not cut by the near plane"
+    )]
+    MaxMin,
+    /// The near plane cuts the surface, and the engine cannot draw that.
+    #[error("the near plane cuts the surface")]
+    NearPlane,
+    /// An order of cells was given for a surface that is not drawn cell by cell.
+    #[error(
+        "an order of cells needs one surface z = f(x, y) over a rectangle without holes, drawn with \
+         grid lines only"
+    )]
+    Order,
+}
+
+/// Why a surface has no level curves.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum NoLevels {
+    /// All points have the same height.
+    #[error("the surface is level, {height} high everywhere: it has no level curves")]
+    Level {
+        /// The height, rounded to six digits.
+        height: f64,
+    },
+    /// None of the heights is one of the surface.
+    #[error(
+        "the surface has heights from {low} to {high}: there is no level curve at any height given"
+    )]
+    OutOfRange {
+        /// The lowest height, rounded to six digits.
+        low: f64,
+        /// The highest height, rounded to six digits.
+        high: f64,
+    },
+}
+
+/// Something worth knowing about a drawing of a surface.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SurfaceNote {
+    /// Lines are farther from the function than asked for, even with the finest samples.
+    #[error(
+        "lines are up to {deviation_mm:.1} mm off the function, at kinks, jumps or where it is steep"
+    )]
+    OffFunction {
+        /// How far, in millimeters on paper.
+        deviation_mm: f64,
+    },
+    /// Two sheets were joined at their common rim.
+    #[error("both sheets end at the same rim: {0} rim points took the mean height of the two")]
+    RimsJoined(usize),
+    /// There are no level curves; other lines are drawn.
+    #[error(transparent)]
+    NoLevels(NoLevels),
+    /// Letters of titles that the font does not have.
+    #[error("the font has no {}: drawn as question marks", list(.0))]
+    MissingLetters(Vec<char>),
+}
+
+fn list(letters: &[char]) -> String {
+    let letters: Vec<String> = letters.iter().map(|letter| format!("`{letter}`")).collect();
+    letters.join(", ")
+}

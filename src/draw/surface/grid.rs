@@ -1,0 +1,95 @@
+//! Surfaces that are one grid: when they are drawn as such, and how.
+
+use super::error::SurfaceError;
+use super::options::{SurfaceEngine, SurfaceLines};
+use crate::camera::Camera;
+use crate::chain::grid_lines::{Lines, strokes};
+use crate::draw::{DrawOutput, MeshSize};
+use crate::engines::edge::LineCounts;
+use crate::engines::surface::floating_horizon::Family;
+use crate::engines::surface::{SurfaceSide, floating_horizon, max_min};
+use crate::surface::{Grid, Holes, SampledSurface};
+use crate::timing::{Seconds, timed};
+
+/// The grid, if it is all there is and an engine for grids is to draw it.
+///
+/// # Errors
+/// That engine was asked for by name but cannot draw what the near plane leaves of the grid.
+pub(super) fn grid_to_draw<'a>(
+    surface: &'a SampledSurface,
+    lines: &SurfaceLines,
+    camera: &Camera,
+) -> Result<Option<&'a Grid>, SurfaceError> {
+    let needs_mesh = lines.levels.is_some() || lines.has_mesh_lines() || !lines.has_grid_lines();
+    let grid = match (surface.grids(), lines.engine) {
+        ([grid], SurfaceEngine::Auto | SurfaceEngine::MaxMin) => {
+            (!needs_mesh && grid.holes() == Holes::None).then_some(grid)
+        }
+        (grids, SurfaceEngine::FloatingHorizon) => {
+            if needs_mesh || lines.along_x == lines.along_y {
+                return Err(SurfaceError::OneFamily);
+            }
+            let [grid] = grids else { return Err(SurfaceError::OneGrid) };
+            Some(grid)
+        }
+        _ => None,
+    };
+    let Some(grid) = grid else { return Ok(None) };
+    if max_min::is_clear_of_near_plane(grid, camera) {
+        return Ok(Some(grid));
+    }
+    match lines.engine {
+        SurfaceEngine::Auto => Ok(None),
+        _ => Err(SurfaceError::NearPlane),
+    }
+}
+
+/// Draws the grid lines of `grid`, every `every`-th of a family.
+///
+/// # Errors
+/// The engine cannot draw the grid.
+pub(super) fn draw_grid(
+    grid: &Grid,
+    camera: &Camera,
+    options: &SurfaceLines,
+    every: usize,
+) -> Result<(DrawOutput, MeshSize), SurfaceError> {
+    let mut seconds = Seconds::default();
+    let (engine, pieces) = timed(&mut seconds.visibility, || -> Result<_, SurfaceError> {
+        Ok(match options.engine {
+            SurfaceEngine::FloatingHorizon => {
+                let family = if options.along_x { Family::AlongX } else { Family::AlongY };
+                ("floating-horizon", floating_horizon::solve(grid, camera, family)?)
+            }
+            _ => (max_min::NAME, max_min::solve(grid, camera, options.order.unwrap_or_default())?),
+        })
+    })?;
+    let drawing = timed(&mut seconds.strokes, || {
+        let (along_x, along_y) = (options.along_x, options.along_y);
+        let lines = Lines { along_x, along_y, every, side: None, separate: options.exact };
+        if !options.underside {
+            return strokes(grid, &pieces, camera, &lines);
+        }
+        let of = |side| strokes(grid, &pieces, camera, &Lines { side: Some(side), ..lines });
+        let mut drawing = of(SurfaceSide::Upper);
+        drawing.append_undersides(&of(SurfaceSide::Lower));
+        drawing
+    });
+    let cells = (grid.xs().len() - 1) * (grid.ys().len() - 1);
+    let size = MeshSize {
+        vertices: grid.zs().len(),
+        faces: 2 * cells,
+        triangles: 2 * cells,
+        edges: pieces.n_edges() + cells,
+        ..MeshSize::default()
+    };
+    let drawn = DrawOutput {
+        drawing,
+        engine,
+        n_lines: pieces.n_edges(),
+        counts: LineCounts { candidate_pairs: pieces.work().comparisons, ..LineCounts::default() },
+        n_exact: pieces.work().exact,
+        seconds,
+    };
+    Ok((drawn, size))
+}

@@ -1,0 +1,110 @@
+//! Which lines of a surface are drawn, and how.
+
+use crate::axes::Titles;
+use crate::draw::DEFAULT_SHORTEST_STROKE_MM;
+use crate::engines::surface::CellOrder;
+
+/// How far lines may be from the curves they stand for, in millimeters on paper, unless set otherwise.
+pub const DEFAULT_SMOOTHNESS_MM: f64 = 0.1;
+
+/// Which lines of a surface are drawn, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceLines {
+    /// Grid lines along x, or along u. Scattered points have no grid lines: instead of them, the edges
+    /// of their triangles are drawn.
+    pub along_x: bool,
+    /// Grid lines along y, or along v.
+    pub along_y: bool,
+    /// Draw only every so many-th grid line of a family, and the last one.
+    pub every: usize,
+    /// Level curves.
+    pub levels: Option<Levels>,
+    /// Edges where the surface folds away from the eye.
+    pub silhouette: bool,
+    /// The border.
+    pub border: bool,
+    /// Lines in which sheets cross.
+    pub intersections: bool,
+    /// All edges of all triangles.
+    pub mesh: bool,
+    /// How far lines may be from the curves they stand for, in millimeters on paper; 0 draws them as
+    /// sampled. Formulas are sampled up to eight times as finely as the surface says, and only the
+    /// lines of its own samples are drawn. Neither the floating horizon nor `mesh` does so.
+    pub smoothness_mm: f64,
+    /// Keep lines on the underside of the surface apart.
+    pub underside: bool,
+    /// Draw what is exactly visible, as one two-point stroke for each visible piece of each edge.
+    pub exact: bool,
+    /// The engine that decides what is visible.
+    pub engine: SurfaceEngine,
+    /// In which order [`max_min`](crate::engines::surface::max_min) visits the cells of a grid; the
+    /// drawing is the same. `None` for the default order, or for surfaces that are not a single grid.
+    pub order: Option<CellOrder>,
+    /// Titles of axes around the surface; `None` for no axes.
+    pub axes: Option<Titles>,
+    /// Join only pieces of one kind.
+    pub apart_by_kind: bool,
+    /// Strokes shorter than this are dropped if the surface is drawn as a mesh, in millimeters on paper.
+    pub shortest_stroke_mm: f64,
+}
+
+impl Default for SurfaceLines {
+    /// All grid lines, with axes.
+    fn default() -> Self {
+        Self {
+            along_x: true,
+            along_y: true,
+            every: 1,
+            levels: None,
+            silhouette: false,
+            border: false,
+            intersections: false,
+            mesh: false,
+            smoothness_mm: DEFAULT_SMOOTHNESS_MM,
+            underside: false,
+            exact: false,
+            engine: SurfaceEngine::default(),
+            order: None,
+            axes: Some(Titles::default()),
+            apart_by_kind: false,
+            shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
+        }
+    }
+}
+
+impl SurfaceLines {
+    /// Whether any grid lines are drawn.
+    pub(super) fn has_grid_lines(&self) -> bool {
+        self.along_x || self.along_y
+    }
+
+    /// Whether any lines are drawn that are not grid lines, apart from level curves.
+    pub(super) fn has_mesh_lines(&self) -> bool {
+        self.silhouette || self.border || self.intersections || self.mesh
+    }
+}
+
+/// Which level curves are drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Levels {
+    /// So many, evenly spaced between the lowest and the highest point.
+    Count(u16),
+    /// At these heights, before any scaling.
+    At(Vec<f64>),
+}
+
+/// The engines for surfaces.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum SurfaceEngine {
+    /// Max-min where it applies, otherwise one for meshes.
+    #[default]
+    Auto,
+    /// One surface z = f(x, y) without holes, or two that meet along their border.
+    MaxMin,
+    /// One family of grid lines, hidden by its own nearer lines.
+    FloatingHorizon,
+    /// Any surface, by Roberts's algorithm.
+    Roberts,
+    /// Any surface, by Appel's algorithm.
+    Appel,
+}

@@ -1,0 +1,201 @@
+//! Surfaces as they are described, before they are sampled.
+
+use glam::DVec3;
+
+use super::formula::{Formula, FormulaError, Variables};
+use super::grid::Grid;
+#[cfg(feature = "points")]
+use super::points::{PointsError, delaunay};
+
+/// The range of x and y that a formula is sampled over, unless set otherwise.
+pub const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
+
+/// Samples along each axis, unless set otherwise.
+pub const DEFAULT_SAMPLES: usize = 81;
+
+/// A surface to draw: one or more sheets z = f(x, y), a grid of heights, scattered points, or a
+/// parametric surface in space.
+///
+/// ```
+/// use hiddenline::stages::surface::{Grid, Surface};
+///
+/// let hat = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0).samples(101, 101);
+/// assert_eq!(hat.sample(1)?.to_string(), "101 × 101 samples");
+///
+/// // Two sheets over a disc.
+/// let ball = Surface::formula("sqrt(9 - r^2)")?.sheet("-sqrt(9 - r^2)")?.domain("r <= 3")?;
+///
+/// let torus = ["(3 + cos(v)) * cos(u)", "(3 + cos(v)) * sin(u)", "sin(v)"];
+/// let turn = (0.0, std::f64::consts::TAU);
+/// let torus = Surface::parametric(torus, turn, turn)?;
+///
+/// let heights = vec![0.0, 1.0, 1.0, 2.0];
+/// let field = Surface::grid(Grid::new(vec![0.0, 1.0], vec![0.0, 1.0], heights)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct Surface {
+    pub(super) source: Source,
+    pub(super) x: (f64, f64),
+    pub(super) y: (f64, f64),
+    pub(super) samples: (usize, usize),
+    pub(super) aspect: Aspect,
+    pub(super) z_scale: f64,
+}
+
+/// Where the points of a surface come from.
+#[derive(Debug, Clone)]
+pub(super) enum Source {
+    /// One sheet for each formula, all over the same domain; `None` is wherever they have values.
+    Formulas {
+        formulas: Vec<Formula>,
+        domain: Option<Formula>,
+    },
+    Grid(Grid),
+    Triangles {
+        points: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+    },
+    /// Formulas of x, y and z, and the ranges of u and v.
+    Parametric {
+        formulas: [Formula; 3],
+        u: (f64, f64),
+        v: (f64, f64),
+    },
+}
+
+/// Whether heights are drawn to the scale of x and y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aspect {
+    /// Heights are scaled so that the box around the surface is 0.4 times as high as the longer side of
+    /// its base.
+    Box,
+    /// As they are.
+    Data,
+}
+
+impl Surface {
+    /// The sheet z = `text`, a formula of x, y, r and theta, for x and y from -5 to 5.
+    ///
+    /// # Errors
+    /// The text is not a formula.
+    pub fn formula(text: &str) -> Result<Self, FormulaError> {
+        Ok(Self::formulas(vec![Formula::parse(text, Variables::Plane)?]))
+    }
+
+    /// One sheet for each formula; their variables are x and y.
+    pub fn formulas(formulas: Vec<Formula>) -> Self {
+        Self::new(Source::Formulas { formulas, domain: None }, Aspect::Box)
+    }
+
+    /// A grid of heights.
+    pub fn grid(grid: Grid) -> Self {
+        Self::new(Source::Grid(grid), Aspect::Box)
+    }
+
+    /// The surface through scattered points: their Delaunay triangulation, seen from above.
+    ///
+    /// # Errors
+    /// See [`PointsError`]. Expected O(n log n).
+    #[cfg(feature = "points")]
+    pub fn points(points: Vec<DVec3>) -> Result<Self, PointsError> {
+        let triangles = delaunay(&points)?;
+        Ok(Self::new(Source::Triangles { points, triangles }, Aspect::Box))
+    }
+
+    /// A surface in space: x, y and z as formulas of u and v. Its ends are joined where they meet, and
+    /// its heights are drawn to the scale of x and y.
+    ///
+    /// # Errors
+    /// A text is not a formula.
+    pub fn parametric(
+        texts: [&str; 3],
+        u: (f64, f64),
+        v: (f64, f64),
+    ) -> Result<Self, FormulaError> {
+        let parse = |text| Formula::parse(text, Variables::Parameters);
+        let [x, y, z] = texts;
+        Ok(Self::parametric_formulas([parse(x)?, parse(y)?, parse(z)?], u, v))
+    }
+
+    /// As [`parametric`](Self::parametric), from formulas whose variables are u and v.
+    pub fn parametric_formulas(formulas: [Formula; 3], u: (f64, f64), v: (f64, f64)) -> Self {
+        Self::new(Source::Parametric { formulas, u, v }, Aspect::Data)
+    }
+
+    fn new(source: Source, aspect: Aspect) -> Self {
+        let (x, y) = (DEFAULT_RANGE, DEFAULT_RANGE);
+        let samples = (DEFAULT_SAMPLES, DEFAULT_SAMPLES);
+        Self { source, x, y, samples, aspect, z_scale: 1.0 }
+    }
+
+    /// Adds a sheet. It matters only for surfaces of formulas.
+    ///
+    /// # Errors
+    /// The text is not a formula.
+    pub fn sheet(mut self, text: &str) -> Result<Self, FormulaError> {
+        let formula = Formula::parse(text, Variables::Plane)?;
+        if let Source::Formulas { formulas, .. } = &mut self.source {
+            formulas.push(formula);
+        }
+        Ok(self)
+    }
+
+    /// Where the surface is: a formula of x and y that is true there, such as `r <= 3`. The surface is
+    /// cut along the border. It matters only for surfaces of formulas.
+    ///
+    /// # Errors
+    /// The text is not a formula.
+    pub fn domain(self, text: &str) -> Result<Self, FormulaError> {
+        Ok(self.within(Formula::parse(text, Variables::Plane)?))
+    }
+
+    /// As [`domain`](Self::domain), from a formula whose variables are x and y.
+    pub fn within(mut self, formula: Formula) -> Self {
+        if let Source::Formulas { domain, .. } = &mut self.source {
+            *domain = Some(formula);
+        }
+        self
+    }
+
+    /// The range of x that formulas are sampled over.
+    pub fn x(mut self, from: f64, to: f64) -> Self {
+        self.x = (from, to);
+        self
+    }
+
+    /// The range of y that formulas are sampled over.
+    pub fn y(mut self, from: f64, to: f64) -> Self {
+        self.y = (from, to);
+        self
+    }
+
+    /// How many samples are taken of formulas along x (or u) and along y (or v).
+    pub fn samples(mut self, along_x: usize, along_y: usize) -> Self {
+        self.samples = (along_x, along_y);
+        self
+    }
+
+    /// Whether heights are drawn to the scale of x and y; [`Aspect::Box`] unless set, but
+    /// [`Aspect::Data`] for parametric surfaces.
+    pub fn aspect(mut self, aspect: Aspect) -> Self {
+        self.aspect = aspect;
+        self
+    }
+
+    /// Multiplies heights, after the scaling of [`Aspect::Box`].
+    pub fn z_scale(mut self, factor: f64) -> Self {
+        self.z_scale = factor;
+        self
+    }
+
+    /// How many samples there are along each axis if formulas are sampled; `None` for what is given by
+    /// points, which cannot be sampled more finely.
+    pub fn samples_of_formulas(&self) -> Option<(usize, usize)> {
+        match self.source {
+            Source::Formulas { .. } | Source::Parametric { .. } => Some(self.samples),
+            Source::Grid(_) | Source::Triangles { .. } => None,
+        }
+    }
+}
