@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use glam::{DVec2, dvec2};
-use hiddenline::stages::optimize::{Effort, Options, optimize_lines, order};
+use hiddenline::stages::optimize::{Effort, OptimizeOptions, optimize_lines, order};
 use hiddenline::stages::plot::Polylines;
 
 fn main() {
@@ -50,7 +50,7 @@ fn net(n: usize) -> Polylines {
 #[divan::bench(args = [2_000, 20_000, 200_000], max_time = 10)]
 fn join_net(bencher: Bencher<'_, '_>, n: usize) {
     let lines = net(n);
-    let options = Options { effort: Effort::None, ..Options::default() };
+    let options = OptimizeOptions { effort: Effort::None, ..OptimizeOptions::default() };
     bencher.bench_local(|| optimize_lines(&lines, None, &options));
 }
 

@@ -153,6 +153,7 @@ fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
             pens: Vec::new(),
             hidden: HiddenLines::None,
             dash: Dash::default(),
+            keep_dashes_whole: false,
             title: String::new(),
             source: String::new(),
         };

@@ -173,5 +173,5 @@ pub use page::{Dash, Orientation, Page, PageOptions, Paper, PenRole, PenRule, Pl
 pub use plot::{Layer, Pen, Plot, Polylines};
 
 // The plotter.
-pub use optimize::{Effort, Options as OptimizeOptions};
+pub use optimize::{Effort, OptimizeOptions};
 pub use write::{Format, Target};

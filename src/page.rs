@@ -170,6 +170,8 @@ pub struct PlotOptions {
     pub hidden: HiddenLines,
     /// Lengths of dashes and gaps.
     pub dash: Dash,
+    /// Whether dashed lines stay whole, on layers that name the pattern, for a format that draws it.
+    pub keep_dashes_whole: bool,
     /// What the drawing shows.
     pub title: String,
     /// The command that made it; empty for none.
@@ -183,6 +185,7 @@ impl Default for PlotOptions {
             pens: Vec::new(),
             hidden: HiddenLines::default(),
             dash: Dash::default(),
+            keep_dashes_whole: false,
             title: String::new(),
             source: String::new(),
         }
@@ -286,7 +289,9 @@ impl Page {
             }
             on_page.clear();
             on_page.extend(stroke.points.iter().map(|&p| self.page_from_image.transform_point2(p)));
-            let dashed = stroke.qi > 0 && options.hidden == HiddenLines::Dashed;
+            let dashed = stroke.qi > 0
+                && options.hidden == HiddenLines::Dashed
+                && !options.keep_dashes_whole;
             let lines = holder.lines(&stroke);
             cropped |= window.crop(&mut on_page, |piece| {
                 if dashed {

@@ -46,6 +46,9 @@ pub struct Layer {
     pub pen: Pen,
     /// Polylines in page millimeters; a closed one ends at its first point.
     pub lines: Polylines,
+    /// Dash and gap in millimeters, for formats that have dash patterns; the lines are then whole.
+    /// `None` for lines that are drawn as they are.
+    pub dash_mm: Option<[f64; 2]>,
     /// Areas in page millimeters, painted in their order and before the lines. Plotters have none.
     pub fills: Fills,
 }
@@ -67,6 +70,18 @@ impl Layer {
     /// Whether the machine pauses before the layer: the label begins with `!`.
     pub fn pauses(&self) -> bool {
         self.label.as_ref().is_some_and(|label| label.trim_start().starts_with('!'))
+    }
+
+    /// Pen-down speed in percent of the machine's highest that the label asks for, as in `2 +S40`.
+    /// AxiDraw's software takes 1 to 110.
+    pub fn speed_percent(&self) -> Option<u32> {
+        let label = self.label.as_ref()?.trim_start_matches(['%', '!', ' ']);
+        let controls = label.trim_start_matches(|c: char| c.is_ascii_digit());
+        let speeds = controls
+            .split_whitespace()
+            .filter_map(|word| word.strip_prefix(['+']))
+            .filter_map(|word| word.strip_prefix(['S', 's']));
+        speeds.filter_map(|digits| digits.parse().ok()).find(|percent| (1..=110).contains(percent))
     }
 }
 

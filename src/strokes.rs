@@ -37,6 +37,23 @@ pub enum StrokeKind {
 }
 
 impl StrokeKind {
+    /// All kinds.
+    pub const ALL: [Self; 13] = [
+        Self::Silhouette,
+        Self::Crease,
+        Self::Boundary,
+        Self::Nonmanifold,
+        Self::Intersection,
+        Self::Wire,
+        Self::Material,
+        Self::Mesh,
+        Self::Grid,
+        Self::Level,
+        Self::Axis,
+        Self::Text,
+        Self::Hatch,
+    ];
+
     /// The name used on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {

@@ -20,6 +20,7 @@ pub(crate) fn plot_options(title: &str) -> PlotOptions {
         pens: Vec::new(),
         hidden: HiddenLines::None,
         dash: Dash::default(),
+        keep_dashes_whole: false,
         title: title.into(),
         source: String::new(),
     }

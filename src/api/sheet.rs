@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::Error;
-use crate::optimize::{Options as OptimizeOptions, optimize};
+use crate::optimize::{OptimizeOptions, optimize};
 use crate::page::PlacedPlot;
 use crate::plot::Plot;
 use crate::write::{Format, Target, WriteError, write};

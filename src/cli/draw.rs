@@ -8,9 +8,10 @@ use clap::Args;
 use glam::DVec2;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::model::scene::Scene;
-use hiddenline::stages::optimize::Options;
+use hiddenline::stages::optimize::OptimizeOptions;
 use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_line_pens};
 use hiddenline::stages::write::Format;
+use hiddenline::stages::write::dxf::DxfScale;
 
 use self::lines::LineArgs;
 use super::camera::{CameraArgs, ViewSource};
@@ -63,6 +64,7 @@ pub(super) struct Job {
     draw: DrawOptions,
     page: PageOptions,
     unit_mm: f64,
+    dxf_scale: DxfScale,
     pen_width_mm: f64,
     dash: Dash,
     output: OutputOptions,
@@ -84,6 +86,7 @@ impl DrawArgs {
             view,
             page: output.target.within_reach(page.options()),
             unit_mm: page.unit_mm(),
+            dxf_scale: page.dxf_scale(),
             pen_width_mm: page.pen_width_mm(),
             dash: lines.dash,
             draw: DrawOptions { apart_by_kind, ..lines.options() },
@@ -101,6 +104,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         Subject::read(read, &job.view, lines, !job.draw.exact, &run.progress, &mut run.stats)?;
     run.notes.add(notes);
     run.unit_mm = job.unit_mm;
+    run.dxf_scale = job.dxf_scale;
     run.progress.stage("drawing");
     let sheet = Sheet::new(scene.extent(&camera), camera, &job.page)?;
     let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
@@ -110,7 +114,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         run.empty_because = why_empty(job, &scene, &sheet, drawn.n_lines);
     }
     drop(scene);
-    run.draw(&drawn.drawing, &sheet, plot_options(job), &Options::for_drawings())
+    run.draw(&drawn.drawing, &sheet, plot_options(job), &OptimizeOptions::for_drawings())
 }
 
 /// Why a drawing has no strokes, and what helps.
@@ -140,11 +144,15 @@ fn plot_options(job: &Job) -> PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: job.draw.hidden,
         dash: job.dash,
+        keep_dashes_whole: job.output.keeps_dashes_whole,
         title: job.files.title(),
-        pens: with_line_pens(
-            job.output.plotting.pens(job.pen_width_mm),
-            job.draw.lines,
-            job.draw.hidden_levels,
+        pens: job.output.plotting.with_kinds_apart(
+            with_line_pens(
+                job.output.plotting.pens(job.pen_width_mm),
+                job.draw.lines,
+                job.draw.hidden_levels,
+                job.pen_width_mm,
+            ),
             job.pen_width_mm,
         ),
         source: source::source(config::arguments()),

@@ -12,7 +12,7 @@ use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::engines::face::Prepared;
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::model::scene::Scene;
-use hiddenline::stages::optimize::Options;
+use hiddenline::stages::optimize::OptimizeOptions;
 use hiddenline::stages::page::{PageOptions, PlotOptions};
 use hiddenline::stages::read::material_colors;
 use hiddenline::stages::shading::fill::{FillOptions, Filled, fill_prepared};
@@ -176,7 +176,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
-    let Run { output, start, progress, stats, mut notes, unit_mm, empty_because } = run;
+    let Run { output, start, progress, stats, mut notes, unit_mm, empty_because, dxf_scale } = run;
     drop(progress);
     let cameras = camera.turntable(n.into())?;
     let frame = Some(scene.extent_of_views(&cameras));
@@ -185,8 +185,16 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
         let empty_because = empty_because.clone();
-        let run =
-            Run { output, start, progress, stats: stats.clone(), notes, unit_mm, empty_because };
+        let run = Run {
+            output,
+            start,
+            progress,
+            stats: stats.clone(),
+            notes,
+            unit_mm,
+            empty_because,
+            dxf_scale,
+        };
         let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;
     }
@@ -233,6 +241,7 @@ impl Picture<'_> {
             pens: job.output.plotting.pens(job.pen_width_mm),
             hidden: Default::default(),
             dash: Default::default(),
+            keep_dashes_whole: false,
             title: job.input.title(),
             source: source::source(config::arguments()),
         };
@@ -244,7 +253,7 @@ impl Picture<'_> {
             run.empty_because = "all of it lies beyond the margins".to_owned();
             run.notes.warnings.push("the picture was cut off at the margins".into());
         }
-        run.plot_to(path, &page.paper.description(), placed.plot, &Options::for_drawings())
+        run.plot_to(path, &page.paper.description(), placed.plot, &OptimizeOptions::for_drawings())
     }
 }
 

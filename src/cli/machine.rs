@@ -1,9 +1,11 @@
-//! The machine to write for: what it understands, and how it moves.
+//! The machine that the output is for: what it understands, and how it moves.
 
 use std::path::{Path, PathBuf};
 
 use hiddenline::stages::optimize::estimate::Motion;
 use hiddenline::stages::page::{Cropped, PageOptions};
+use hiddenline::stages::plot::{Layer, Plot};
+use hiddenline::stages::write::hpgl::Plotter;
 use hiddenline::stages::write::{Format, gcode, hpgl};
 use thiserror::Error;
 
@@ -16,21 +18,21 @@ const DEFAULT_PLOTTER: &str = "hp7475a";
 /// The profile of G-code, unless set otherwise.
 const DEFAULT_GCODE: &str = "grbl-servo";
 
-/// What a file is written for.
-pub(super) struct Target {
+/// The machine that a file is written for.
+pub(super) struct MachineTarget {
     pub(super) device: Device,
     pub(super) motion: Motion,
 }
 
-/// A machine that has a say in what is written.
+/// What the output depends on.
 pub(super) enum Device {
-    /// None: the format is the same for all.
+    /// No machine: the format is the same for all.
     Any,
-    Plotter(hpgl::Machine),
-    Gcode(Box<gcode::Profile>),
+    Plotter(Plotter),
+    Gcode(Box<gcode::GcodeProfile>),
 }
 
-/// Why there is no machine to write for.
+/// Why a machine cannot be used.
 #[derive(Debug, Error)]
 pub(super) enum MachineError {
     #[error("there is no machine called `{name}`{suggestion}")]
@@ -40,26 +42,26 @@ pub(super) enum MachineError {
     #[error("cannot read {}: {error}", path.display())]
     Read { path: PathBuf, error: std::io::Error },
     #[error("{}: {error}", path.display())]
-    Profile { path: PathBuf, error: gcode::Error },
+    Profile { path: PathBuf, error: gcode::GcodeError },
     #[error(transparent)]
     Settings(#[from] config::ConfigError),
     #[error("{origin}: {error}")]
     Own { origin: String, error: Box<dyn std::error::Error + Send + Sync> },
     #[error(transparent)]
-    Plotters(#[from] hpgl::Error),
+    Plotters(#[from] hpgl::PlotterError),
     #[error(transparent)]
-    Gcode(#[from] gcode::Error),
+    Gcode(#[from] gcode::GcodeError),
 }
 
 impl MachineError {
-    /// Whether the name that was typed is wrong, rather than what it stands for.
+    /// Whether the name on the command line is wrong, rather than the machine's own settings.
     pub(super) fn is_usage(&self) -> bool {
         matches!(self, Self::Unknown { .. } | Self::OtherFormat { .. })
     }
 }
 
-impl Target {
-    /// Finds the machine called `name`, or the usual one for `format`.
+impl MachineTarget {
+    /// Finds the machine called `name`, or the default for `format`.
     pub(super) fn new(
         format: Format,
         name: Option<&str>,
@@ -75,7 +77,7 @@ impl Target {
             return Ok(Self { device, motion });
         }
         let plotters = hpgl::machines()?;
-        let profiles = gcode::Profile::names()?;
+        let profiles = gcode::GcodeProfile::names()?;
         let plotter = |name: &str| plotters.iter().find(|p| p.name.eq_ignore_ascii_case(name));
         let profile = |name: &str| profiles.iter().find(|p| p.eq_ignore_ascii_case(name));
         let wanted = name.unwrap_or(match format {
@@ -93,7 +95,7 @@ impl Target {
                 Self { device: Device::Plotter(plotter.clone()), motion: Motion::default() }
             }
             (None, None, Some(name)) => {
-                let profile = gcode::Profile::named(name)?;
+                let profile = gcode::GcodeProfile::named(name)?;
                 let motion = profile.motion.clone();
                 Self { device: Device::Gcode(Box::new(profile)), motion }
             }
@@ -129,8 +131,8 @@ impl Target {
     }
 }
 
-impl Target {
-    /// The page with a margin wide enough that the pen reaches all of what lies within it.
+impl MachineTarget {
+    /// The page with a margin so wide that the pen reaches everything between the margins.
     pub(super) fn within_reach(&self, options: PageOptions) -> PageOptions {
         let Device::Plotter(machine) = &self.device else { return options };
         let paper = options.paper;
@@ -140,7 +142,7 @@ impl Target {
     }
 }
 
-/// What was cut off, as the beginning of a message; `None` if nothing was.
+/// How much ink was cut off, as the start of a message; `None` if all of it is there.
 pub(super) fn lost_ink(cropped: &Cropped) -> Option<String> {
     let dots = counted(cropped.lost_dots, "dot", "dots");
     match (cropped.lost_mm > 0.0, cropped.lost_dots > 0) {
@@ -151,13 +153,49 @@ pub(super) fn lost_ink(cropped: &Cropped) -> Option<String> {
     }
 }
 
-/// A machine of a configuration file: a plotter where papers are listed, a profile of G-code where
-/// it has templates or is `like` a known one, and otherwise only how it moves.
-fn own_machine(name: &str, mut table: toml::Table, origin: String) -> Result<Target, MachineError> {
+/// What layers ask for that the plotter has no instruction for.
+pub(super) fn unkept_controls(plot: &Plot, machine: &Plotter) -> Vec<String> {
+    let numbers = |asks: fn(&Layer) -> bool| {
+        let layers = plot.plotted_layers().filter(|layer| asks(layer) && !layer.lines.is_empty());
+        let numbers: Vec<String> = layers.map(|layer| layer.number.to_string()).collect();
+        (!numbers.is_empty()).then(|| numbers.join(", "))
+    };
+    let title = &machine.title;
+    let pauses = match machine.pause {
+        Some(_) => None,
+        None => numbers(Layer::pauses).map(|layers| {
+            format!(
+                "{title} cannot pause before layer {layers}, as `!` asks; give each pen a place in \
+                 the machine, or write the layers to separate files"
+            )
+        }),
+    };
+    let speeds = match machine.speeds {
+        Some(_) => None,
+        None => numbers(|layer| layer.speed_percent().is_some()).map(|layers| {
+            format!("no pen speeds are known for {title}; `+S` of layer {layers} has no effect")
+        }),
+    };
+    pauses.into_iter().chain(speeds).collect()
+}
+
+/// A machine from a configuration file: a plotter if it lists papers or is `like` a known plotter, a
+/// G-code profile if it has templates or is `like` a known profile, and otherwise only how it moves.
+fn own_machine(
+    name: &str,
+    mut table: toml::Table,
+    origin: String,
+) -> Result<MachineTarget, MachineError> {
     let failed = |error: Box<dyn std::error::Error + Send + Sync>| MachineError::Own {
         origin: origin.clone(),
         error,
     };
+    let like = table.get("like").and_then(toml::Value::as_str);
+    if let Some(mut known) = like.map(Plotter::table).transpose()?.flatten() {
+        table.remove("like");
+        known.extend(table);
+        table = known;
+    }
     if table.contains_key("paper") {
         let motion = match table.remove("motion") {
             Some(motion) => motion.try_into().map_err(|error| failed(error.into()))?,
@@ -165,32 +203,35 @@ fn own_machine(name: &str, mut table: toml::Table, origin: String) -> Result<Tar
         };
         table.entry("name").or_insert_with(|| name.into());
         table.entry("title").or_insert_with(|| name.into());
-        let plotter = table.try_into().map_err(|error| failed(error.into()))?;
-        return Ok(Target { device: Device::Plotter(plotter), motion });
+        let plotter: Plotter = table.try_into().map_err(|error| failed(error.into()))?;
+        plotter.check().map_err(|error| failed(error.into()))?;
+        return Ok(MachineTarget { device: Device::Plotter(plotter), motion });
     }
     if let Some(like) = table.remove("like") {
         let like = like.as_str().unwrap_or_default();
-        let known = gcode::Profile::table(like)?;
+        let known = gcode::GcodeProfile::table(like)?;
         let Some(mut known) = known else {
-            let names = gcode::Profile::names()?;
-            let suggestion = suggestion(like, names.iter().map(String::as_str));
-            return Err(failed(format!("there is no profile called `{like}`{suggestion}").into()));
+            let (names, plotters) = (gcode::GcodeProfile::names()?, hpgl::machines()?);
+            let plotters = plotters.iter().map(|plotter| plotter.name.as_str());
+            let known = names.iter().map(String::as_str).chain(plotters);
+            let suggestion = suggestion(like, known);
+            return Err(failed(format!("there is no machine called `{like}`{suggestion}").into()));
         };
         known.extend(table);
         table = known;
     } else if let (1, Some(motion)) = (table.len(), table.get("motion")) {
         let motion = motion.clone().try_into().map_err(|error| failed(error.into()))?;
-        return Ok(Target { device: Device::Any, motion });
+        return Ok(MachineTarget { device: Device::Any, motion });
     }
     let text = toml::to_string(&table).map_err(|error| failed(error.into()))?;
-    let profile = gcode::Profile::from_toml(&text).map_err(|error| failed(error.into()))?;
+    let profile = gcode::GcodeProfile::from_toml(&text).map_err(|error| failed(error.into()))?;
     let motion = profile.motion.clone();
-    Ok(Target { device: Device::Gcode(Box::new(profile)), motion })
+    Ok(MachineTarget { device: Device::Gcode(Box::new(profile)), motion })
 }
 
-fn read_profile(path: &Path) -> Result<gcode::Profile, MachineError> {
+fn read_profile(path: &Path) -> Result<gcode::GcodeProfile, MachineError> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| MachineError::Read { path: path.to_owned(), error })?;
-    gcode::Profile::from_toml(&text)
+    gcode::GcodeProfile::from_toml(&text)
         .map_err(|error| MachineError::Profile { path: path.to_owned(), error })
 }

@@ -1,11 +1,11 @@
-//! `hiddenline optimize`: from the lines of any SVG to a file for a plotter.
+//! `hiddenline optimize`: turns the lines of any SVG into a file for a plotter.
 
 use std::error::Error;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use hiddenline::stages::optimize::{Options, near_overlap};
+use hiddenline::stages::optimize::{OptimizeOptions, near_overlap};
 use hiddenline::stages::page::{Crop, Orientation, Paper, PenRole, RefitOptions, refit};
 use hiddenline::stages::plot::Plot;
 use hiddenline::stages::read_svg::{self, SvgOptions};
@@ -22,30 +22,30 @@ use super::{Refused, config, source, values};
 const EXAMPLES: &str = "\
 Examples:
   hiddenline optimize drawing.svg -o ready.svg
-      The same lines, joined into fewer strokes, in an order with short ways between them.
+      The same lines, joined into fewer strokes and ordered for short pen-up travel.
   hiddenline optimize drawing.svg --optimize best --machine hp7475a -o drawing.plt
       For a pen plotter.
   vpype read a.svg linesimplify write - | hiddenline optimize - -o ready.gcode
-      From standard input to a machine with GRBL and a servo.";
+      From standard input to a GRBL machine with a pen servo.";
 
 /// Join and order the strokes of any line SVG for a plotter
 ///
-/// Reads paths, lines, polygons, circles and the like with transforms, units and layers; curves
-/// become chords. Each Inkscape layer and each color in it is a pen. Ink that lies on other ink of
-/// its pen is drawn once. The output may be the file that is read: it is replaced when all is done.
+/// Reads paths, lines, polygons, circles and so on, with transforms, units and layers; curves become
+/// chords. Each layer, and each color in it, is a pen. Ink that lies on other ink of the same pen is
+/// drawn once. The output may be the input file: it is replaced once everything is done.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct OptimizeArgs {
     /// SVG file to read; `-` is standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// How far chords may be from the curves they stand for
+    /// Maximum distance between a curve and its chords
     #[arg(long, value_name = "MM", value_parser = values::positive_length, default_value = "0.02")]
     tolerance: f64,
-    /// Drop strokes shorter than this, and close those whose ends are this close
+    /// Drop strokes shorter than this, and close strokes whose ends are closer than this
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     shortest_stroke: f64,
-    /// Opaque fills hide the ink below them; shapes with a fill and no stroke only hide
+    /// Let opaque fills hide the ink below them; a shape with a fill but no stroke only hides
     #[arg(long)]
     occlude: bool,
     #[command(flatten)]
@@ -61,22 +61,22 @@ struct SheetArgs {
     /// [default: the page of the file]
     #[arg(long, value_name = "SIZE")]
     page: Option<Paper>,
-    /// Wide rather than high
+    /// Turn the sheet so that it is wider than high
     #[arg(long, conflicts_with = "portrait")]
     landscape: bool,
-    /// High rather than wide
+    /// Turn the sheet so that it is higher than wide
     #[arg(long)]
     portrait: bool,
     /// Empty border, for --fit and --crop margin
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     margin: f64,
-    /// Scale the drawing to be as large as the margins allow, centered
+    /// Scale the drawing to fill the space between the margins, centered
     #[arg(long)]
     fit: bool,
     /// Center the drawing on the sheet
     #[arg(long)]
     center: bool,
-    /// Where ink is cut off
+    /// Where to crop the ink
     #[arg(long, value_name = "WHERE", value_enum, default_value = "page")]
     crop: CropAt,
 }
@@ -109,7 +109,7 @@ impl SheetArgs {
     }
 }
 
-/// What is to be done.
+/// Checked options.
 pub(super) struct Job {
     file: PathBuf,
     svg: SvgOptions,
@@ -132,7 +132,7 @@ impl OptimizeArgs {
                 .into());
         }
         check_place(output.path.as_deref(), &output.inputs)?;
-        // An SVG may be replaced by itself in a better order: it is read before, and as a whole.
+        // An SVG may be replaced by its own optimized version: it is read completely before that.
         if output.format != Format::Svg {
             check_place(output.path.as_deref(), [&self.file])?;
         }
@@ -150,7 +150,7 @@ impl OptimizeArgs {
     }
 }
 
-/// Does the job; the error is a message for the user.
+/// Runs the command; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     if is_dash(&job.file) && io::stdin().is_terminal() {
@@ -181,7 +181,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let n_read = n_strokes(&plot);
     let mut warnings: Vec<String> = read.warnings.into_iter().collect();
     let sheet = match &job.output.target.device {
-        // To fit is to fit what the pen reaches.
+        // `--fit` fits the drawing into what the pen can reach.
         Device::Plotter(machine) if job.sheet.fit => {
             let paper = job
                 .sheet
@@ -238,7 +238,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         ),
     });
     let paper = format!("{} x {} mm", tenths(plot.width_mm), tenths(plot.height_mm));
-    let usual = Options { shortest_mm: job.shortest_mm, ..Options::default() };
+    let usual = OptimizeOptions { shortest_mm: job.shortest_mm, ..OptimizeOptions::default() };
     run.plot(&paper, plot, &usual)
 }
 

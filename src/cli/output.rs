@@ -1,4 +1,4 @@
-//! The output: where the drawing goes, in what format, and what is told on the way.
+//! The output: file, format, and what is reported.
 
 mod place;
 
@@ -11,7 +11,7 @@ use hiddenline::stages::write::svg::StrokeElement;
 
 pub(super) use self::place::check_place;
 use super::choice::one_of;
-use super::machine::Target;
+use super::machine::MachineTarget;
 use super::paths::is_dash;
 use super::plotting::{PlotArgs, Plotting};
 use super::{Refused, config, values};
@@ -37,12 +37,17 @@ pub(super) struct OutputArgs {
     /// Pixels from left to right of a PNG
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..))]
     png_width: Option<u32>,
-    /// Show in a PNG how the pens go: travel, order, or both with a comma between them
+    /// Show the pens' movements in a PNG: travel, order, or both separated by a comma
     ///
-    /// travel: the ways with the pen up, as thin red lines; order: strokes from blue for the first by
-    /// green to red for the last.
+    /// travel: pen-up travel as thin red lines; order: strokes from blue (first) through green to red
+    /// (last).
     #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
     png_show: Vec<PngMark>,
+    /// How DXF has dashed lines: each dash a line of its own, or whole lines with a linetype
+    ///
+    /// CAM programs want lines; CAD programs draw native dashes and can change them.
+    #[arg(long, value_name = "HOW", value_enum, default_value = "lines")]
+    dxf_dashes: DxfDashes,
     /// Threads to work with [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -55,7 +60,7 @@ pub(super) struct OutputArgs {
     /// Print what was done in more detail
     #[arg(short, long)]
     verbose: bool,
-    /// Take warnings for errors: exit with 1 and write nothing
+    /// Treat warnings as errors: exit with 1 and write nothing
     #[arg(long)]
     strict: bool,
     /// Take the settings called NAME in the configuration files
@@ -66,12 +71,18 @@ pub(super) struct OutputArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum DxfDashes {
+    Lines,
+    Native,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum PngMark {
     Travel,
     Order,
 }
 
-/// Where the drawing goes, and what is told on the way.
+/// Checked options of the output.
 pub(super) struct OutputOptions {
     /// `None` is standard output.
     pub(super) path: Option<PathBuf>,
@@ -79,14 +90,16 @@ pub(super) struct OutputOptions {
     pub(super) svg_element: StrokeElement,
     pub(super) resolution: Resolution,
     pub(super) marks: Marks,
+    /// Whether dashed lines are written whole, for the format to draw the dashes.
+    pub(super) keeps_dashes_whole: bool,
     pub(super) threads: Option<usize>,
     pub(super) stats: bool,
     pub(super) quiet: bool,
     pub(super) verbose: bool,
     pub(super) strict: bool,
     pub(super) plotting: Plotting,
-    pub(super) target: Target,
-    /// Files that are read for the output's sake.
+    pub(super) target: MachineTarget,
+    /// Files that these options name.
     pub(super) inputs: Vec<PathBuf>,
     /// About options that have no effect.
     pub(super) warnings: Vec<String>,
@@ -103,7 +116,8 @@ impl OutputArgs {
         Ok(OutputOptions {
             inputs: self.plotting.inputs(),
             warnings: without_effect(format),
-            plotting: self.plotting.options(exact)?,
+            plotting: self.plotting.options(exact, format)?,
+            keeps_dashes_whole: format == Format::Dxf && self.dxf_dashes == DxfDashes::Native,
             target,
             format,
             path,
@@ -146,19 +160,20 @@ impl OutputOptions {
             verbose: false,
             strict: false,
             plotting: Plotting::default(),
-            target: Target::new(Format::Png, None, None)?,
+            keeps_dashes_whole: false,
+            target: MachineTarget::new(Format::Png, None, None)?,
             inputs: Vec::new(),
             warnings: Vec::new(),
         })
     }
 }
 
-/// Warnings about what was typed for another format than that of the output.
+/// Warnings about options on the command line that are for a different format.
 fn without_effect(format: Format) -> Vec<String> {
     let for_png = ["--dpi", "--png-width", "--png-show"].map(|option| (option, Format::Png));
-    let for_svg = [("--svg-element", Format::Svg)];
+    let others = [("--svg-element", Format::Svg), ("--dxf-dashes", Format::Dxf)];
     let other = |(option, of): &(&str, Format)| *of != format && config::is_typed(option);
-    let options = for_png.into_iter().chain(for_svg).filter(other);
+    let options = for_png.into_iter().chain(others).filter(other);
     let warning = |(option, of): (&str, Format)| {
         let (format, of) = (format.name(), of.name());
         format!("{option} has no effect on {format}; it is for {of}")

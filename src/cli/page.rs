@@ -5,6 +5,8 @@ use hiddenline::stages::page::{
     DEFAULT_MARGIN_MM, DEFAULT_PEN_WIDTH_MM, Orientation, PageOptions, Paper, Placement,
 };
 
+use hiddenline::stages::write::dxf::{DxfScale, DxfUnit};
+
 use super::values;
 
 #[derive(Args)]
@@ -27,7 +29,7 @@ pub(super) struct PageArgs {
     margin: f64,
     /// Scale, as in 1:10, instead of fitting the drawing to the page
     ///
-    /// In perspective it holds at the distance of the target.
+    /// In perspective it holds at the distance of the target. Coordinates in DXF are then model units.
     #[arg(long, value_name = "1:N", value_parser = values::scale, conflicts_with = "fit_fov")]
     drawing_scale: Option<f64>,
     /// What a model unit is, for --drawing-scale
@@ -53,6 +55,19 @@ enum LengthUnit {
 impl PageArgs {
     pub(super) fn pen_width_mm(&self) -> f64 {
         self.pen_width
+    }
+
+    /// What coordinates in DXF mean: model units if the drawing has a scale, or else millimeters on
+    /// paper.
+    pub(super) fn dxf_scale(&self) -> DxfScale {
+        let unit = match self.unit {
+            LengthUnit::Mm => DxfUnit::Millimeter,
+            LengthUnit::Cm => DxfUnit::Centimeter,
+            LengthUnit::M => DxfUnit::Meter,
+            LengthUnit::In => DxfUnit::Inch,
+        };
+        let at_scale = |scale: f64| DxfScale { mm_per_unit: scale * self.unit_mm(), unit };
+        self.drawing_scale.map_or(DxfScale::default(), at_scale)
     }
 
     /// Millimeters of a model unit, for --drawing-scale.

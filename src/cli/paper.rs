@@ -8,11 +8,12 @@ use std::time::Instant;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::optimize::estimate::PenWork;
-use hiddenline::stages::optimize::{Effort, Options};
+use hiddenline::stages::optimize::{Effort, OptimizeOptions};
 use hiddenline::stages::page::{Page, PageError, PageOptions, Placement, PlotOptions, crop_to};
 use hiddenline::stages::plot::Plot;
 use hiddenline::stages::strokes::Strokes;
 use hiddenline::stages::timing::{Seconds, timed};
+use hiddenline::stages::write::dxf::DxfScale;
 use hiddenline::stages::write::png::PngError;
 use hiddenline::stages::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
 
@@ -48,6 +49,8 @@ pub(super) struct Run<'a> {
     pub(super) notes: Notes,
     /// Millimeters of a model unit, for scales in messages.
     pub(super) unit_mm: f64,
+    /// What coordinates in DXF mean.
+    pub(super) dxf_scale: DxfScale,
     /// Why there are no strokes, if it turns out that there are none.
     pub(super) empty_because: String,
 }
@@ -138,7 +141,16 @@ impl<'a> Run<'a> {
         let progress = Progress::new(output.quiet);
         let notes = Notes { warnings: output.warnings.clone(), ..Notes::default() };
         let empty_because = "nothing is in view".to_owned();
-        Ok(Self { output, start, progress, stats, notes, unit_mm: 1.0, empty_because })
+        Ok(Self {
+            output,
+            start,
+            progress,
+            stats,
+            notes,
+            unit_mm: 1.0,
+            empty_because,
+            dxf_scale: DxfScale::default(),
+        })
     }
 
     /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
@@ -147,7 +159,7 @@ impl<'a> Run<'a> {
         drawing: &Strokes,
         sheet: &Sheet,
         plot: PlotOptions,
-        usual: &Options,
+        usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
         let Sheet { camera, page, .. } = sheet;
         let paper = page.paper.description();
@@ -178,7 +190,7 @@ impl<'a> Run<'a> {
         self,
         paper: &str,
         plot: Plot,
-        usual: &Options,
+        usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
         let path = self.output.path.as_deref();
         self.plot_to(path, paper, plot, usual)
@@ -190,12 +202,12 @@ impl<'a> Run<'a> {
         path: Option<&Path>,
         paper: &str,
         plot: Plot,
-        usual: &Options,
+        usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
-        let output = self.output;
+        let (output, dxf_scale) = (self.output, self.dxf_scale);
         let plot = match (&output.target.device, output.format) {
             (Device::Plotter(machine), Format::Hpgl) => {
-                let profile = hpgl::Profile::on(&plot, machine.clone(), None)?;
+                let profile = hpgl::LoadedPlotter::on(&plot, machine.clone(), None)?;
                 let reach = profile.reach(&plot);
                 let cropped = crop_to(plot, reach);
                 let lost = machine::lost_ink(&cropped);
@@ -206,24 +218,31 @@ impl<'a> Run<'a> {
                         machine.title
                     )
                 }));
+                self.notes.warnings.extend(machine::unkept_controls(&cropped.plot, machine));
                 cropped.plot
             }
             _ => plot,
         };
         self.progress.stage("ordering strokes");
         let mut order_seconds = 0.0;
-        let Finished { plot, stats, n_changes } =
-            timed(&mut order_seconds, || output.plotting.finish(plot, &output.target, usual));
+        let Finished { plot, stats, n_changes } = timed(&mut order_seconds, || {
+            let progress = &self.progress;
+            output.plotting.finish(plot, &output.target, usual, &mut |share| progress.share(share))
+        });
         self.stats.seconds.order += order_seconds;
         self.stats.plot = Some(stats);
         let done = Done { stats, n_changes, order_seconds };
         let profile = match (&output.target.device, output.format) {
             (Device::Plotter(machine), Format::Hpgl) => {
-                Some(hpgl::Profile::on(&plot, machine.clone(), None)?)
+                Some(hpgl::LoadedPlotter::on(&plot, machine.clone(), None)?)
             }
             _ => None,
         };
         self.notes.warnings.extend(alike_pens(&plot));
+        let mut plot = plot;
+        if output.format == Format::Dxf {
+            plot.layers.retain(|layer| !layer.lines.is_empty());
+        }
         let is_empty =
             plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty());
         let what = Written { paper, contents: described(&plot, &done) };
@@ -237,7 +256,7 @@ impl<'a> Run<'a> {
                 }
                 (Format::Gcode, Device::Gcode(profile)) => gcode::write(written, profile, out)?,
                 (Format::Pdf, _) => pdf::write(written, out)?,
-                (Format::Dxf, _) => dxf::write(written, out)?,
+                (Format::Dxf, _) => dxf::write(written, dxf_scale, out)?,
                 (Format::Png, _) => {
                     png::write_marked(written, output.resolution, output.marks, out)?;
                 }
@@ -262,7 +281,7 @@ impl<'a> Run<'a> {
         if self.output.strict && !self.notes.warnings.is_empty() {
             drop(self.progress);
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
-            return Err("there are warnings, which --strict takes for errors; \
+            return Err("there are warnings, which --strict treats as errors; \
                         nothing was written"
                 .into());
         }

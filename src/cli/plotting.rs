@@ -1,49 +1,53 @@
-//! What the strokes of a page go through before they are written, for all commands.
+//! Pens, joining and stroke order, for all commands.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use hiddenline::stages::optimize::estimate::{self, PenWork};
-use hiddenline::stages::optimize::{Effort, Options, optimize, split_by_distance};
-use hiddenline::stages::page::{PenRole, PenRule, default_pen_color};
+use hiddenline::stages::optimize::{
+    Effort, OptimizeOptions, Watch, optimize_watched, split_by_distance,
+};
+use hiddenline::stages::page::{LayerControls, PenRole, PenRule, default_pen_color};
 use hiddenline::stages::plot::{Pen, Plot};
+use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::write::Format;
 
-use super::machine::{MachineError, Target};
+use super::machine::{MachineError, MachineTarget};
 use super::stats::PlotStats;
 use super::values::{self, PenText};
 
 #[derive(Args)]
 #[command(next_help_heading = "Pens and plotter")]
 pub(super) struct PlotArgs {
-    /// How long to search for a short way between the strokes: none, fast, best, or seconds as 10s
+    /// Effort spent reducing pen-up travel: none, fast, best, or a time limit such as 10s
     ///
-    /// Strokes of one pen are joined into the fewest that there can be, ink that lies on other ink
-    /// is drawn once, and then they are ordered. All but seconds give the same result each time.
-    /// By default fast; large function surfaces are drawn line by line, in a short way already.
+    /// The strokes of each pen are joined into as few as possible, ink that lies on other ink is drawn
+    /// once, and then the stroke order is chosen. Except with a time limit, the result is always the
+    /// same. The default is fast; large function surfaces are already drawn line by line.
     #[arg(long, value_name = "EFFORT", value_parser = values::effort)]
     optimize: Option<Effort>,
-    /// Leave out points that are no farther than this from the line; joints are kept
+    /// Remove points closer than this to the simplified line; joints are kept
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     simplify: f64,
-    /// Ends of strokes this close to each other are one
+    /// Join strokes whose ends are this close
     ///
-    /// By default only equal ends are joined in drawings, where joints are known, and those within
-    /// the rounding of the file in an SVG that is read.
+    /// By default, drawings of models join equal ends only, and drawings read from SVG join ends that
+    /// are equal within the rounding of the file.
     #[arg(long, value_name = "MM", value_parser = values::length)]
     join_tolerance: Option<f64>,
-    /// Ink this close to other ink of its pen lies on it and is left out
+    /// Leave out ink this close to other ink of the same pen
     ///
-    /// By default 0.0005 in drawings; in an SVG that is read 0, which is exactly collinear ink only.
+    /// The default is 0.0005 for drawings of models. For drawings read from SVG it is 0: only exactly
+    /// collinear ink is left out.
     #[arg(long, value_name = "MM", value_parser = values::length)]
     overlap_tolerance: Option<f64>,
-    /// Begin a new layer where a pen has drawn this far, between strokes; 10m is ten meters
+    /// Start a new layer, between strokes, once the pen has drawn this far; 10m is ten meters
     #[arg(long, value_name = "LENGTH", value_parser = values::distance)]
     split_distance: Option<f64>,
-    /// Also cut strokes where --split-distance is drawn, and draw this much of the end once more
+    /// Also cut strokes at --split-distance, and start the next layer this far before the cut
     #[arg(long, value_name = "MM", value_parser = values::length, requires = "split_distance")]
     split_overlap: Option<f64>,
-    /// What draws: it decides HPGL and G-code, and the estimate of the time
+    /// Machine to write HPGL or G-code for, and to estimate the plotting time of
     ///
     /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan, dmp-161, dxy, sketchmate.
     /// G-code: grbl-servo (default), grbl-z, grbl-laser, marlin. For the estimate also saxi
@@ -63,12 +67,14 @@ pub(super) struct PlotArgs {
     pens: Vec<PenText>,
 }
 
-/// What is to be done with the strokes.
+/// How strokes are joined, ordered and given to pens.
 #[derive(Default)]
 pub(super) struct Plotting {
     /// Whether they are to be left as they are.
     exact: bool,
-    /// How long to search for a short way; `None` for what is usual.
+    /// Whether each kind of visible line has a layer, as CAD programs expect.
+    apart_by_kind: bool,
+    /// Effort spent reducing pen-up travel; `None` for the default.
     effort: Option<Effort>,
     simplify_mm: f64,
     join_tolerance_mm: Option<f64>,
@@ -80,8 +86,8 @@ pub(super) struct Plotting {
 
 impl PlotArgs {
     /// The machine to write for.
-    pub(super) fn target(&self, format: Format) -> Result<Target, MachineError> {
-        Target::new(format, self.machine.as_deref(), self.gcode_profile.as_deref())
+    pub(super) fn target(&self, format: Format) -> Result<MachineTarget, MachineError> {
+        MachineTarget::new(format, self.machine.as_deref(), self.gcode_profile.as_deref())
     }
 
     /// Files that these options name.
@@ -90,7 +96,9 @@ impl PlotArgs {
     }
 
     /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn options(self, exact: bool) -> Result<Plotting, String> {
+    ///
+    /// With `exact`, strokes are to be left as they are.
+    pub(super) fn options(self, exact: bool, format: Format) -> Result<Plotting, String> {
         for (i, pen) in self.pens.iter().enumerate() {
             let earlier = self.pens.iter().take(i).find(|other| other.number == pen.number);
             if let Some(other) = earlier {
@@ -105,6 +113,7 @@ impl PlotArgs {
         }
         Ok(Plotting {
             exact,
+            apart_by_kind: format == Format::Dxf,
             effort: self.optimize,
             simplify_mm: self.simplify,
             join_tolerance_mm: self.join_tolerance,
@@ -128,7 +137,7 @@ impl Plotting {
     /// Whether kinds of line or hidden levels have pens of their own.
     pub(super) fn has_pens_by_kind(&self) -> bool {
         let by_kind = |drawn| matches!(drawn, PenRole::Kind(_) | PenRole::HiddenLevel(_));
-        self.pens.iter().any(|pen| by_kind(pen.drawn))
+        self.apart_by_kind || self.pens.iter().any(|pen| by_kind(pen.drawn))
     }
 
     /// How close ink must be to other ink to be left out, if that was set.
@@ -146,7 +155,27 @@ impl Plotting {
         self.pens.iter().any(|pen| pen.drawn.is_hidden())
     }
 
-    /// How long to search for a short way, if that was said.
+    /// Adds a pen like that of the visible lines for each kind of line that has none, if kinds are to
+    /// be apart.
+    pub(super) fn with_kinds_apart(&self, pens: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
+        let mut rules = pens;
+        if !self.apart_by_kind {
+            return rules;
+        }
+        let visible = rules.iter().find(|rule| rule.drawn == PenRole::Visible);
+        let pen = visible.map_or(Pen { width_mm, ..Pen::default() }, |rule| rule.pen.clone());
+        for drawn in StrokeKind::ALL.map(PenRole::Kind) {
+            if rules.iter().all(|rule| rule.drawn != drawn) {
+                let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
+                let number = (1..).find(is_free).unwrap_or(1);
+                let (pen, controls) = (pen.clone(), LayerControls::default());
+                rules.push(PenRule { drawn, number, pen, controls });
+            }
+        }
+        rules
+    }
+
+    /// Effort spent reducing pen-up travel, if it was given.
     pub(super) fn effort(&self) -> Option<Effort> {
         self.effort
     }
@@ -166,9 +195,15 @@ impl Plotting {
     }
 
     /// Joins, simplifies, orders and splits; `usual` is what holds unless it was set otherwise.
-    pub(super) fn finish(&self, plot: Plot, target: &Target, usual: &Options) -> Finished {
+    pub(super) fn finish(
+        &self,
+        plot: Plot,
+        target: &MachineTarget,
+        usual: &OptimizeOptions,
+        watch: &mut Watch<'_>,
+    ) -> Finished {
         let work = |plot: &Plot| -> PenWork { estimate::estimate(plot, &target.motion).work() };
-        let options = Options {
+        let options = OptimizeOptions {
             join_tolerance_mm: self.join_tolerance_mm.or(usual.join_tolerance_mm),
             overlap_mm: self.overlap_mm.unwrap_or(usual.overlap_mm),
             simplify_mm: self.simplify_mm,
@@ -179,7 +214,7 @@ impl Plotting {
         let (mut plot, after, n_changes) = if self.exact || options.is_idle() {
             (plot, before, 0)
         } else {
-            let (plot, n_changes) = optimize(&plot, &options);
+            let (plot, n_changes) = optimize_watched(&plot, &options, watch);
             let after = work(&plot);
             (plot, after, n_changes)
         };

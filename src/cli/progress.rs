@@ -1,4 +1,5 @@
-//! A line on the terminal that says what is being done, once the work takes over a second.
+//! A line on the terminal that says what is being done, once the work takes over a second, and how
+//! much of it is done where that is known.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -8,6 +9,11 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+
+const WITHOUT_SHARE: &str = "{spinner} {msg} {elapsed}";
+const WITH_SHARE: &str = "{spinner} {msg} {bar:30} {percent}% {elapsed}, {eta} left";
 
 /// Shown while it lives.
 pub(super) struct Progress {
@@ -22,9 +28,6 @@ impl Progress {
         if quiet || !std::io::stderr().is_terminal() {
             return Self { bar, waiting: None };
         }
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
-            bar.set_style(style);
-        }
         let (done, is_done) = mpsc::channel::<()>();
         let late = bar.clone();
         let thread = std::thread::spawn(move || {
@@ -33,12 +36,37 @@ impl Progress {
                 late.enable_steady_tick(Duration::from_millis(100));
             }
         });
-        Self { bar, waiting: Some((done, thread)) }
+        let progress = Self { bar, waiting: Some((done, thread)) };
+        progress.set_style(WITHOUT_SHARE);
+        progress
     }
 
     /// Says what is being done now.
     pub(super) fn stage(&self, what: &'static str) {
         self.bar.set_message(what);
+        if self.bar.length().is_some() {
+            self.bar.unset_length();
+            self.set_style(WITHOUT_SHARE);
+        }
+    }
+
+    /// Shows which share of the stage is done, from 0 to 1, and the time left.
+    pub(super) fn share(&self, share: f64) {
+        if self.waiting.is_none() {
+            return;
+        }
+        if self.bar.length().is_none() {
+            self.bar.set_length(STEPS);
+            self.bar.reset_eta();
+            self.set_style(WITH_SHARE);
+        }
+        self.bar.set_position((share * STEPS as f64) as u64);
+    }
+
+    fn set_style(&self, template: &str) {
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            self.bar.set_style(style);
+        }
     }
 }
 

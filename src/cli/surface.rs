@@ -10,7 +10,7 @@ use hiddenline::stages::draw::DEFAULT_SHORTEST_STROKE_MM;
 use hiddenline::stages::draw::surface::{
     NoLevels, SurfaceError, SurfaceLines, SurfaceNote, draw_surface,
 };
-use hiddenline::stages::optimize::{Effort, Options};
+use hiddenline::stages::optimize::{Effort, OptimizeOptions};
 use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_underside_pen};
 use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::timing::timed;
@@ -24,6 +24,7 @@ use super::camera::{ViewSource, with_remedy};
 use super::output::OutputOptions;
 use super::paper::{Run, Sheet, page_error};
 use super::{config, source};
+use hiddenline::stages::write::dxf::DxfScale;
 
 /// What is to be done.
 pub(super) struct Job {
@@ -32,6 +33,7 @@ pub(super) struct Job {
     lines: SurfaceLines,
     page: PageOptions,
     unit_mm: f64,
+    dxf_scale: DxfScale,
     pen_width_mm: f64,
     output: OutputOptions,
 }
@@ -40,6 +42,7 @@ pub(super) struct Job {
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     run.unit_mm = job.unit_mm;
+    run.dxf_scale = job.dxf_scale;
     run.progress.stage("reading");
     let warnings = &mut run.notes.warnings;
     let surface = timed(&mut run.stats.seconds.read, || job.sheets.read(warnings))?;
@@ -62,9 +65,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.stats.count(drawing.size);
     run.stats.add(&drawing.drawn);
     run.notes.summary = format!("{}: {}", job.sheets.title(), drawing.samples);
-    let usual = Options::for_drawings();
+    let usual = OptimizeOptions::for_drawings();
     let usual = if drawing.is_ordered {
-        Options { join_tolerance_mm: None, effort: Effort::None, ..usual }
+        OptimizeOptions { join_tolerance_mm: None, effort: Effort::None, ..usual }
     } else {
         usual
     };
@@ -122,8 +125,12 @@ fn plot_options(job: &Job) -> PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: HiddenLines::None,
         dash: Dash { dash_mm: 2.5, gap_mm: 1.25 },
+        keep_dashes_whole: false,
         title: job.sheets.title(),
-        pens: if job.lines.underside { with_underside_pen(pens, job.pen_width_mm) } else { pens },
+        pens: job.output.plotting.with_kinds_apart(
+            if job.lines.underside { with_underside_pen(pens, job.pen_width_mm) } else { pens },
+            job.pen_width_mm,
+        ),
         source: source::source(config::arguments()),
     }
 }

@@ -1,8 +1,8 @@
 //! Pen-down and pen-up travel, and the time a plot takes.
 //!
-//! The model of plotter drivers: along a stroke the pen speeds up and slows down evenly, no faster
-//! than its limit, and slows down at corners so that rounding each off by a small deviation would
-//! not exceed the acceleration (Jeon 2011, the junction deviation of GRBL):
+//! The motion model of plotter drivers: along a stroke the pen accelerates and brakes evenly up to a
+//! speed limit. At corners it slows down to a speed at which rounding the corner by a small deviation
+//! would not exceed the acceleration (Jeon 2011, the junction deviation of GRBL):
 //!
 //! ```text
 //!    v = √( a · δ · s / (1 − s) ),   s = sin(θ / 2),   θ the angle between the two segments
@@ -13,7 +13,7 @@
 //!      start      corner      end
 //! ```
 //!
-//! Strokes begin and end at rest, and so does every move with the pen up.
+//! Each stroke and each pen-up move starts and ends at rest.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -96,7 +96,7 @@ impl Default for Motion {
 
 /// Travel and time of a plot.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Estimate {
+pub struct TravelEstimate {
     /// Number of strokes; the pen is raised after each.
     pub strokes: usize,
     /// Pen-down travel in millimeters.
@@ -109,7 +109,7 @@ pub struct Estimate {
     pub seconds: f64,
 }
 
-/// What the pens do, in the units of messages and statistics.
+/// A [`TravelEstimate`] in the units of messages and statistics.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct PenWork {
     /// Strokes.
@@ -124,7 +124,7 @@ pub struct PenWork {
     pub minutes: f64,
 }
 
-impl Estimate {
+impl TravelEstimate {
     /// Minutes from the first stroke to the last lift.
     pub fn minutes(&self) -> f64 {
         self.seconds / 60.0
@@ -143,8 +143,8 @@ impl Estimate {
 }
 
 /// Estimates a whole plot, layer after layer.
-pub fn estimate(plot: &Plot, motion: &Motion) -> Estimate {
-    let mut sum = Estimate::default();
+pub fn estimate(plot: &Plot, motion: &Motion) -> TravelEstimate {
+    let mut sum = TravelEstimate::default();
     let mut last = None;
     for layer in plot.plotted_layers() {
         add_lines(&mut sum, &mut last, &layer.lines, motion);
@@ -153,20 +153,25 @@ pub fn estimate(plot: &Plot, motion: &Motion) -> Estimate {
 }
 
 /// Estimates one pen's strokes.
-pub fn estimate_lines(lines: &Polylines, motion: &Motion) -> Estimate {
-    let mut sum = Estimate::default();
+pub fn estimate_lines(lines: &Polylines, motion: &Motion) -> TravelEstimate {
+    let mut sum = TravelEstimate::default();
     add_lines(&mut sum, &mut None, lines, motion);
     sum
 }
 
-fn add_lines(sum: &mut Estimate, last: &mut Option<DVec2>, lines: &Polylines, motion: &Motion) {
+fn add_lines(
+    sum: &mut TravelEstimate,
+    last: &mut Option<DVec2>,
+    lines: &Polylines,
+    motion: &Motion,
+) {
     let lines: Vec<&[DVec2]> = lines.iter().collect();
-    // The pen rests between strokes, so each can be estimated for itself; sums are in order.
+    // The pen rests between strokes, so each is estimated on its own; sums are in stroke order.
     let down: Vec<(f64, f64)> = lines
         .par_iter()
-        .map_init(Ways::default, |ways, line| {
-            let (way, seconds) = ways.follow(line, motion);
-            (way, motion.lower + seconds + motion.raise)
+        .map_init(SpeedProfile::default, |profile, line| {
+            let (length, seconds) = profile.follow(line, motion);
+            (length, motion.lower + seconds + motion.raise)
         })
         .collect();
     for (line, (way, seconds)) in lines.iter().zip(down) {
@@ -185,16 +190,16 @@ fn add_lines(sum: &mut Estimate, last: &mut Option<DVec2>, lines: &Polylines, mo
     }
 }
 
-/// The ways of a stroke, and the speeds at its points. Kept from stroke to stroke as scratch space.
+/// Lengths of a stroke's segments and speeds at its points: scratch space, reused for all strokes.
 #[derive(Default)]
-struct Ways {
+struct SpeedProfile {
     lengths: Vec<f64>,
-    /// Squares of speeds, since those grow evenly along a way.
+    /// Squares of speeds, which grow linearly with distance at constant acceleration.
     squares: Vec<f64>,
 }
 
-impl Ways {
-    /// How long a stroke is, and the seconds to draw it from rest to rest.
+impl SpeedProfile {
+    /// The length of a stroke, and the seconds to draw it from rest to rest.
     fn follow(&mut self, line: &[DVec2], motion: &Motion) -> (f64, f64) {
         let Self { lengths, squares } = self;
         let gain = 2.0 * motion.down_acceleration;
@@ -208,7 +213,7 @@ impl Ways {
             corner_speed_squared(if across > 0.0 { cosine } else { 1.0 }, motion)
         }));
         squares.push(0.0);
-        // Reachable from the point before, and such that the next can be reached.
+        // Reachable from the previous point, and slow enough to reach the next one.
         for (i, length) in lengths.iter().enumerate() {
             squares[i + 1] = squares[i + 1].min(squares[i] + gain * length);
         }
@@ -238,7 +243,7 @@ fn corner_speed_squared(cosine: f64, motion: &Motion) -> f64 {
     }
 }
 
-/// Seconds for a way between two speeds, up to the limit and down again if it is long enough.
+/// Seconds to cover a distance from one speed to another, reaching the limit if it is long enough.
 fn ramp_seconds(way: f64, from: f64, to: f64, limit: f64, acceleration: f64) -> f64 {
     let peak = ((from * from + to * to) / 2.0 + acceleration * way).sqrt();
     if peak <= limit {

@@ -131,7 +131,7 @@ fn weld(points: &[DVec2], tolerance: f64) -> (Vec<DVec2>, Vec<u32>) {
     });
     let mut groups: Vec<Group> = Vec::new();
     let mut vertex_of = vec![NONE; points.len()];
-    let mut cells = Cells::new(tolerance);
+    let mut cells = WeldCells::new(tolerance);
     let mut last: Option<(DVec2, u32)> = None;
     for &i in &order {
         let p = key(i);
@@ -176,13 +176,13 @@ impl Group {
 }
 
 /// First points of groups by square cells as wide as the tolerance, so that near ones lie in nine cells.
-struct Cells {
+struct WeldCells {
     size: f64,
     heads: FxHashMap<(i64, i64), u32>,
     next: Vec<u32>,
 }
 
-impl Cells {
+impl WeldCells {
     fn new(size: f64) -> Self {
         Self { size, heads: FxHashMap::default(), next: Vec::new() }
     }
@@ -229,12 +229,12 @@ impl Cells {
 }
 
 /// The half-edges that leave each vertex. Half-edge `2e + s` leaves vertex `s` of edge `e`.
-pub(super) struct Stars {
+pub(super) struct IncidentEdges {
     starts: Vec<u32>,
     half_edges: Vec<u32>,
 }
 
-impl Stars {
+impl IncidentEdges {
     pub(super) fn new(graph: &Graph) -> Self {
         let n = graph.positions.len();
         let mut starts = vec![0u32; n + 1];

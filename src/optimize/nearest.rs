@@ -13,12 +13,12 @@ pub(super) struct NearestPoints<'a> {
     order: Vec<u32>,
     /// Where in `order` each point stands.
     place: Vec<u32>,
-    nodes: Vec<Node>,
+    nodes: Vec<TreeNode>,
     n_inner: usize,
 }
 
 #[derive(Clone, Copy)]
-struct Node {
+struct TreeNode {
     low: DVec2,
     high: DVec2,
     start: u32,
@@ -26,7 +26,7 @@ struct Node {
     left: u32,
 }
 
-impl Node {
+impl TreeNode {
     fn distance_squared(&self, p: DVec2) -> f64 {
         p.distance_squared(p.clamp(self.low, self.high))
     }
@@ -40,7 +40,7 @@ impl<'a> NearestPoints<'a> {
             depth += 1;
         }
         let n_inner = (1 << depth) - 1;
-        let empty = Node { low: DVec2::ZERO, high: DVec2::ZERO, start: 0, left: 0 };
+        let empty = TreeNode { low: DVec2::ZERO, high: DVec2::ZERO, start: 0, left: 0 };
         let mut tree = Self {
             points,
             order: (0..points.len() as u32).collect(),
@@ -70,7 +70,7 @@ impl<'a> NearestPoints<'a> {
             };
             run.select_nth_unstable_by(middle, |&i, &j| key(i).total_cmp(&key(j)).then(i.cmp(&j)));
         }
-        self.nodes[node] = Node { low, high, start: start as u32, left: (end - start) as u32 };
+        self.nodes[node] = TreeNode { low, high, start: start as u32, left: (end - start) as u32 };
         if node < self.n_inner {
             self.build(2 * node + 1, start, start + middle);
             self.build(2 * node + 2, start + middle, end);

@@ -1,32 +1,32 @@
 //! Stroke order: which stroke comes next, at which end it begins, and where closed strokes begin.
 //!
-//! Closed strokes first get the seam nearest to the stroke before, when always the nearest one comes
-//! next; the route itself is made by `greedy` and shortened by `tour`, and then better seams are
-//! chosen and it is shortened again.
+//! A nearest-neighbor route first gives each closed stroke a seam, the point nearest to the stroke
+//! before it. `greedy` then builds the real route and `tour` shortens it; with better seams it is
+//! shortened once more.
 
 use std::time::Instant;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::Effort;
 use super::graph::NONE;
 use super::greedy::greedy;
 use super::nearest::NearestPoints;
 use super::tour::Tour;
+use super::{Effort, Watch};
 use crate::plot::Polylines;
 
 /// Ends each end may be linked to in the search.
 const N_NEIGHBORS: usize = 10;
-/// Points of a closed stroke tried as its seam when the nearest one is looked for; all of them
-/// are tried later.
+/// Points of a closed stroke that the nearest-neighbor route tries as its seam. All of them are tried
+/// later.
 const N_SEAMS: usize = 16;
-/// Times the route is shortened when there are closed strokes, with better seams each time.
+/// How often the route is shortened if there are closed strokes, each time with better seams.
 const ROUNDS: usize = 2;
-/// Longest runs of strokes turned around, one pass each: cheap moves come first, and no move takes
-/// longer than a millisecond on any drawing.
+/// Longest runs of strokes that a move may reverse, one pass each: cheap moves come first, and no move
+/// takes longer than a millisecond on any drawing.
 const MAX_TURNS: [usize; 3] = [1_000, 10_000, 100_000];
-/// The same while random changes are tried: those act within a small neighborhood.
+/// The same for random changes, which act within a small neighborhood.
 const MAX_TURN_ITERATED: usize = 1_000;
 
 /// Strokes in drawing order.
@@ -38,12 +38,17 @@ pub struct Ordered {
     pub n_changes: u64,
 }
 
-/// Orders `lines` for a short way with the pen up. The path begins at that one of its two ends
-/// which is nearer to the page's origin.
+/// Orders `lines` for short pen-up travel. Of the route's two ends, the one nearer to the page's origin
+/// comes first.
 ///
-/// Deterministic unless `effort` is [`Effort::Within`]. O(n log n) with the effort that is stated
-/// at [`Effort`]; about 200 bytes a stroke.
+/// Deterministic unless `effort` is [`Effort::Within`]. O(n log n) plus the search that [`Effort`]
+/// describes; about 200 bytes for each stroke.
 pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
+    order_watched(lines, effort, &mut |_| ())
+}
+
+/// As [`order`], and reports the share of the work that is done.
+pub(super) fn order_watched(lines: &Polylines, effort: Effort, watch: &mut Watch<'_>) -> Ordered {
     if effort == Effort::None || lines.len() < 2 {
         return Ordered { lines: lines.clone(), n_changes: 0 };
     }
@@ -53,30 +58,43 @@ pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
     let mut route = if any_closed { nearest_first(&strokes) } else { as_given(&strokes) };
     let mut n_changes = 0;
     let n_rounds = if any_closed { ROUNDS } else { 1 };
+    // Random changes, where many are tried, take most of the time.
+    let wanted_changes = effort.n_changes(strokes.len());
+    let routed = if wanted_changes > strokes.len() as u64 { 0.3 } else { 1.0 };
     for round in 0..n_rounds {
+        let at = |pass: f64| {
+            let passes = MAX_TURNS.len() as f64 + 1.0;
+            routed * (round as f64 + pass / passes) / n_rounds as f64
+        };
+        watch(at(0.0));
         let ends = Ends::new(&strokes, &route);
         let entries = match round {
             0 => greedy(&ends.points, &ends.neighbors, N_NEIGHBORS),
             _ => route.iter().map(|visit| 2 * visit.stroke + u32::from(visit.turned)).collect(),
         };
         let mut tour = Tour::new(&ends.points, &entries, &ends.neighbors, N_NEIGHBORS);
-        for max_turn in MAX_TURNS {
-            tour.improve_all(max_turn);
+        for (pass, max_turn) in MAX_TURNS.into_iter().enumerate() {
+            tour.improve_all(max_turn, &mut |share| watch(at(1.0 + pass as f64 + share)));
         }
         // The first round only finds good seams.
         if round + 1 == n_rounds {
-            let in_time = || match effort {
-                Effort::Within(time) => begun.elapsed() < time,
-                _ => true,
+            let go_on = |n_tried: u64| {
+                let share = match effort {
+                    Effort::Within(time) => begun.elapsed().as_secs_f64() / time.as_secs_f64(),
+                    _ => n_tried as f64 / wanted_changes as f64,
+                };
+                watch(routed + (1.0 - routed) * share.min(1.0));
+                !matches!(effort, Effort::Within(time) if begun.elapsed() >= time)
             };
-            n_changes = tour.iterate(effort.n_changes(strokes.len()), MAX_TURN_ITERATED, in_time);
+            n_changes = tour.iterate(wanted_changes, MAX_TURN_ITERATED, go_on);
         }
         for (visit, entry) in route.iter_mut().zip(tour.entries()) {
             let seam = ends.seams[entry as usize / 2];
-            *visit = Visit { stroke: entry / 2, turned: entry % 2 == 1, seam };
+            *visit = StrokeVisit { stroke: entry / 2, turned: entry % 2 == 1, seam };
         }
         choose_seams(&strokes, &mut route);
     }
+    watch(1.0);
     turn_toward_origin(&strokes, &mut route);
     let mut ordered = Polylines::default();
     for visit in &route {
@@ -85,16 +103,16 @@ pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
     Ordered { lines: ordered, n_changes }
 }
 
-/// A stroke in its place on the route.
+/// A stroke on the route.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Visit {
+struct StrokeVisit {
     stroke: u32,
     turned: bool,
     /// For a closed stroke, the point it begins and ends at.
     seam: u32,
 }
 
-impl Visit {
+impl StrokeVisit {
     fn entry(&self, stroke: &[DVec2]) -> DVec2 {
         match stroke {
             _ if is_closed(stroke) => stroke[self.seam as usize],
@@ -125,28 +143,28 @@ fn is_closed(stroke: &[DVec2]) -> bool {
     stroke.len() > 2 && stroke.first() == stroke.last()
 }
 
-/// Every stroke as it comes.
-fn as_given(strokes: &[&[DVec2]]) -> Vec<Visit> {
-    (0..strokes.len() as u32).map(|stroke| Visit { stroke, turned: false, seam: 0 }).collect()
+/// The strokes in the order given.
+fn as_given(strokes: &[&[DVec2]]) -> Vec<StrokeVisit> {
+    (0..strokes.len() as u32).map(|stroke| StrokeVisit { stroke, turned: false, seam: 0 }).collect()
 }
 
-/// From the page's origin always on to the nearest end that is left.
-fn nearest_first(strokes: &[&[DVec2]]) -> Vec<Visit> {
+/// Starts at the page's origin and always continues to the nearest end that is left.
+fn nearest_first(strokes: &[&[DVec2]]) -> Vec<StrokeVisit> {
     let mut points = Vec::new();
     let mut visits = Vec::new();
     let mut starts = Vec::with_capacity(strokes.len() + 1);
     for (s, stroke) in strokes.iter().enumerate() {
         starts.push(points.len());
-        let first = Visit { stroke: s as u32, turned: false, seam: 0 };
+        let first = StrokeVisit { stroke: s as u32, turned: false, seam: 0 };
         if is_closed(stroke) {
             let step = (stroke.len() - 1).div_ceil(N_SEAMS);
             for seam in (0..stroke.len() - 1).step_by(step) {
-                visits.push(Visit { seam: seam as u32, ..first });
+                visits.push(StrokeVisit { seam: seam as u32, ..first });
                 points.push(stroke[seam]);
             }
         } else {
             for turned in [false, true] {
-                let visit = Visit { turned, ..first };
+                let visit = StrokeVisit { turned, ..first };
                 visits.push(visit);
                 points.push(visit.entry(stroke));
             }
@@ -178,12 +196,12 @@ struct Ends {
 }
 
 impl Ends {
-    fn new(strokes: &[&[DVec2]], route: &[Visit]) -> Self {
+    fn new(strokes: &[&[DVec2]], route: &[StrokeVisit]) -> Self {
         let mut points = vec![DVec2::ZERO; strokes.len() * 2];
         let mut seams = vec![0; strokes.len()];
         for visit in route {
             let (s, stroke) = (visit.stroke as usize, strokes[visit.stroke as usize]);
-            let forward = Visit { turned: false, ..*visit };
+            let forward = StrokeVisit { turned: false, ..*visit };
             points[2 * s] = forward.entry(stroke);
             points[2 * s + 1] = forward.exit(stroke);
             seams[s] = visit.seam;
@@ -209,15 +227,15 @@ fn neighbors(ends: &[DVec2]) -> Vec<u32> {
     neighbors
 }
 
-/// Moves the seam of each closed stroke to where the way from the stroke before and to the one
-/// after is shortest.
-fn choose_seams(strokes: &[&[DVec2]], route: &mut [Visit]) {
+/// Moves the seam of each closed stroke to where the travel from the previous stroke and to the next
+/// one is shortest.
+fn choose_seams(strokes: &[&[DVec2]], route: &mut [StrokeVisit]) {
     for i in 0..route.len() {
         let stroke = strokes[route[i].stroke as usize];
         if !is_closed(stroke) {
             continue;
         }
-        let neighbor = |visit: &Visit| strokes[visit.stroke as usize];
+        let neighbor = |visit: &StrokeVisit| strokes[visit.stroke as usize];
         let before =
             i.checked_sub(1).and_then(|j| route.get(j)).map(|visit| visit.exit(neighbor(visit)));
         let after = route.get(i + 1).map(|visit| visit.entry(neighbor(visit)));
@@ -233,8 +251,8 @@ fn choose_seams(strokes: &[&[DVec2]], route: &mut [Visit]) {
     }
 }
 
-/// Draws the route the other way if its last end is nearer to the page's origin than its first.
-fn turn_toward_origin(strokes: &[&[DVec2]], route: &mut [Visit]) {
+/// Reverses the route if its last end is nearer to the page's origin than its first.
+fn turn_toward_origin(strokes: &[&[DVec2]], route: &mut [StrokeVisit]) {
     let (Some(first), Some(last)) = (route.first(), route.last()) else {
         return;
     };

@@ -12,7 +12,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::graph::{Graph, Stars, edge_key, target, unique_edges};
+use super::graph::{Graph, IncidentEdges, edge_key, target, unique_edges};
 
 /// Cuts edges where others end on them and run along them, and keeps shared pieces once.
 ///
@@ -24,10 +24,10 @@ use super::graph::{Graph, Stars, edge_key, target, unique_edges};
 /// O(edges · √vertices) when all are as long as the page.
 pub fn remove_overlaps(graph: &mut Graph, tolerance_mm: f64) {
     let tolerance = tolerance_mm.max(0.0);
-    let Some(grid) = Grid::new(graph, tolerance) else {
+    let Some(grid) = VertexGrid::new(graph, tolerance) else {
         return;
     };
-    let stars = Stars::new(graph);
+    let stars = IncidentEdges::new(graph);
     let shared: &Graph = graph;
     let cuts: Vec<(u32, Vec<u32>)> = (0..shared.edges.len() as u32)
         .into_par_iter()
@@ -55,9 +55,15 @@ pub fn remove_overlaps(graph: &mut Graph, tolerance_mm: f64) {
 }
 
 /// Vertices that cut edge `e`, from its first to its second vertex.
-fn inner_vertices(graph: &Graph, stars: &Stars, grid: &Grid, e: u32, tolerance: f64) -> Vec<u32> {
+fn inner_vertices(
+    graph: &Graph,
+    stars: &IncidentEdges,
+    grid: &VertexGrid,
+    e: u32,
+    tolerance: f64,
+) -> Vec<u32> {
     let [a, b] = graph.edges[e as usize];
-    let edge = Line { from: graph.position(a), to: graph.position(b), tolerance };
+    let edge = InkSegment { from: graph.position(a), to: graph.position(b), tolerance };
     let mut inner: Vec<(f64, u32)> = Vec::new();
     grid.near(edge.from, edge.to, tolerance, |vertex| {
         let p = graph.position(vertex);
@@ -67,7 +73,7 @@ fn inner_vertices(graph: &Graph, stars: &Stars, grid: &Grid, e: u32, tolerance: 
                 let q = graph.position(other);
                 let ahead = (q - p).dot(edge.to - edge.from);
                 let end = if ahead > 0.0 { b } else { a };
-                let onward = Line { from: p, to: q, tolerance };
+                let onward = InkSegment { from: p, to: q, tolerance };
                 ahead != 0.0
                     && (other == end || edge.passes(q) || onward.passes(graph.position(end)))
             });
@@ -81,13 +87,13 @@ fn inner_vertices(graph: &Graph, stars: &Stars, grid: &Grid, e: u32, tolerance: 
 }
 
 /// A straight piece with the deviation at which ink still counts as lying on it.
-struct Line {
+struct InkSegment {
     from: DVec2,
     to: DVec2,
     tolerance: f64,
 }
 
-impl Line {
+impl InkSegment {
     /// Whether `p` lies on the piece, strictly between its ends.
     fn passes(&self, p: DVec2) -> bool {
         let along = self.to - self.from;
@@ -102,7 +108,7 @@ impl Line {
 }
 
 /// Vertices by square cells.
-struct Grid {
+struct VertexGrid {
     low: DVec2,
     cell: f64,
     n_columns: usize,
@@ -111,7 +117,7 @@ struct Grid {
     vertices: Vec<u32>,
 }
 
-impl Grid {
+impl VertexGrid {
     fn new(graph: &Graph, tolerance: f64) -> Option<Self> {
         let first = *graph.positions.first()?;
         let (low, high) =

@@ -19,6 +19,8 @@ use std::collections::VecDeque;
 
 use glam::DVec2;
 
+use super::Watch;
+
 /// Nanometers in a millimeter.
 const NM_PER_MM: f64 = 1e6;
 /// Strokes Or-opt moves at once.
@@ -79,25 +81,31 @@ impl<'a> Tour<'a> {
         from[1..].iter().chain(before).copied().collect()
     }
 
-    /// Applies moves until none shortens the path, turning at most `max_turn` strokes around in one.
-    pub(super) fn improve_all(&mut self, max_turn: usize) {
+    /// Applies moves until none shortens the path; a move reverses `max_turn` strokes at most.
+    pub(super) fn improve_all(&mut self, max_turn: usize, watch: &mut Watch<'_>) {
         self.max_turn = max_turn;
         for i in 0..self.ring.len() {
             let c = self.ring[i];
             self.push(c);
             self.push(c ^ 1);
         }
-        self.improve_queued();
+        let n_queued = self.queue.len().max(1) as f64;
+        let mut least = n_queued;
+        self.improve_queued(|n_left| {
+            // Moves put ends back into the queue; the share never shrinks.
+            least = least.min(n_left as f64);
+            watch(1.0 - least / n_queued);
+        });
     }
 
-    /// Swaps two neighboring runs of strokes at a random place and improves around it, keeping
-    /// the outcome if it is no longer: `n_changes` times, or while `go_on` says so. Returns how
-    /// many were tried.
+    /// Swaps two neighboring runs of strokes at a random place, improves the route around them and
+    /// keeps the result unless it is longer. Does so `n_changes` times, or until `go_on`, called with the
+    /// number of changes tried, returns false. Returns how many were tried.
     pub(super) fn iterate(
         &mut self,
         n_changes: u64,
         max_turn: usize,
-        mut go_on: impl FnMut() -> bool,
+        mut go_on: impl FnMut(u64) -> bool,
     ) -> u64 {
         self.max_turn = max_turn;
         let n = self.ring.len();
@@ -108,7 +116,7 @@ impl<'a> Tour<'a> {
         self.logging = true;
         let longest = MAX_SWAPPED.min(n / 3);
         for done in 0..n_changes {
-            if done % 128 == 0 && !go_on() {
+            if done % 128 == 0 && !go_on(done) {
                 self.logging = false;
                 return done;
             }
@@ -123,7 +131,7 @@ impl<'a> Tour<'a> {
                 self.push(self.linked(c));
                 self.push(c);
             }
-            change += self.improve_queued();
+            change += self.improve_queued(|_| ());
             if change > 0 {
                 for i in (0..self.turned.len()).rev() {
                     let (start, len) = self.turned[i];
@@ -153,7 +161,7 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// Length of the way between two ends; to the closing stroke there is none.
+    /// Distance between two ends; 0 to the closing stroke.
     fn link(&self, a: u32, b: u32) -> i64 {
         match (self.ends.get(a as usize), self.ends.get(b as usize)) {
             (Some(a), Some(b)) => (a.distance(*b) * NM_PER_MM) as i64,
@@ -161,7 +169,7 @@ impl<'a> Tour<'a> {
         }
     }
 
-    /// The end the pen comes from or goes to at `end`.
+    /// The end that the pen comes from or goes to at `end`.
     fn linked(&self, end: u32) -> u32 {
         let n = self.ring.len();
         let i = self.place[end as usize / 2] as usize;
@@ -173,9 +181,15 @@ impl<'a> Tour<'a> {
     }
 
     /// Improves around queued ends; returns the change of the path's length.
-    fn improve_queued(&mut self) -> i64 {
+    /// `watch` is given the number of ends left, every thousand ends.
+    fn improve_queued(&mut self, mut watch: impl FnMut(usize)) -> i64 {
         let mut change = 0;
+        let mut n_done = 0_usize;
         while let Some(end) = self.queue.pop_front() {
+            n_done += 1;
+            if n_done.is_multiple_of(1000) {
+                watch(self.queue.len());
+            }
             self.queued[end as usize] = false;
             while let Some(gain) = self.improve(end) {
                 change -= gain;

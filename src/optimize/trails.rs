@@ -17,7 +17,7 @@
 
 use glam::DVec2;
 
-use super::graph::{Graph, NONE, Stars, target};
+use super::graph::{Graph, IncidentEdges, NONE, target};
 
 /// Strokes as runs of vertices; a closed one ends at its first vertex.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -52,7 +52,7 @@ impl Trails {
 /// Open strokes come first, by their first vertex, then closed ones; the result depends on the
 /// graph alone. O(edges · log edges) for vertices of bounded degree.
 pub fn trails(graph: &Graph) -> Trails {
-    let stars = Stars::new(graph);
+    let stars = IncidentEdges::new(graph);
     let mut pairing = Pairing { graph, mate: vec![NONE; graph.edges.len() * 2] };
     for vertex in 0..graph.positions.len() as u32 {
         pairing.pair_straightest(stars.of(vertex));
@@ -172,7 +172,7 @@ impl Pairing<'_> {
         }
     }
 
-    fn walk(&self, stars: &Stars) -> Trails {
+    fn walk(&self, stars: &IncidentEdges) -> Trails {
         let mut drawn = vec![false; self.graph.edges.len()];
         let mut trails = Trails::default();
         let n = self.graph.positions.len() as u32;
@@ -194,7 +194,7 @@ impl Pairing<'_> {
 }
 
 /// Splices every closed trail into another trail of its part of the graph, if there is one.
-fn splice_closed(pairing: &mut Pairing<'_>, stars: &Stars) {
+fn splice_closed(pairing: &mut Pairing<'_>, stars: &IncidentEdges) {
     let mut sets = TrailSets::new(pairing, stars);
     if !sets.open.contains(&false) {
         return;
@@ -253,7 +253,7 @@ struct TrailSets {
 }
 
 impl TrailSets {
-    fn new(pairing: &Pairing<'_>, stars: &Stars) -> Self {
+    fn new(pairing: &Pairing<'_>, stars: &IncidentEdges) -> Self {
         let mut trail_of_edge = vec![NONE; pairing.graph.edges.len()];
         let mut open = Vec::new();
         for closed in [false, true] {

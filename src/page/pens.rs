@@ -150,20 +150,28 @@ pub(super) struct Holder {
     fixed: Vec<bool>,
     visible: usize,
     hidden: usize,
+    /// The pattern of layers for hidden lines.
+    dash_mm: Option<[f64; 2]>,
 }
 
 impl Holder {
     pub(super) fn new(options: &PlotOptions) -> Self {
+        let has_patterns = options.keep_dashes_whole && options.hidden == HiddenLines::Dashed;
+        let dash_mm = has_patterns.then_some([options.dash.dash_mm, options.dash.gap_mm]);
         let mut holder = Self {
             rules: Vec::new(),
             layers: Vec::new(),
             fixed: Vec::new(),
             visible: 0,
             hidden: 0,
+            dash_mm,
         };
         let with_hidden = options.hidden != HiddenLines::None;
         for rule in options.pens.iter().filter(|r| with_hidden || !r.drawn.is_hidden()) {
-            let layer = match holder.layers.iter().position(|l| l.number == rule.number) {
+            let is_dashed = dash_mm.is_some() && rule.drawn.is_hidden();
+            // Whole lines and lines with a pattern cannot share a layer.
+            let is_shared = |l: &Layer| l.number == rule.number && l.dash_mm.is_some() == is_dashed;
+            let layer = match holder.layers.iter().position(is_shared) {
                 Some(layer) => layer,
                 None => {
                     let layer = holder.add(rule.drawn, rule.number, rule.pen.clone(), true);
@@ -203,6 +211,7 @@ impl Holder {
             name,
             pen,
             lines: Polylines::default(),
+            dash_mm: self.dash_mm.filter(|_| drawn.is_hidden()),
             ..Layer::default()
         });
         self.fixed.push(fixed);

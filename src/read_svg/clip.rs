@@ -7,19 +7,19 @@ use roxmltree::Node;
 
 use super::SvgError;
 use super::reader::{Context, Purpose, Reader};
-use super::region::{Polygon, Region};
+use super::region::{ClipRegion, Polygon};
 use super::style::Style;
 use super::transform;
 use crate::plot::Polylines;
 
 impl<'a, 'input> Reader<'a, 'input> {
-    /// The area that `clip-path` leaves of `node`; `None`, with a warning, if it cannot be told.
+    /// The area that `clip-path` leaves of `node`; `None`, with a warning, if it is unknown.
     pub(super) fn clip_region(
         &mut self,
         value: &str,
         node: Node<'a, 'input>,
         context: &Context,
-    ) -> Result<Option<Rc<Region>>, SvgError> {
+    ) -> Result<Option<Rc<ClipRegion>>, SvgError> {
         let id = value.trim().strip_prefix("url(").and_then(|rest| rest.split(')').next());
         let id = id.map(|id| id.trim().trim_matches(['"', '\'']).trim_start_matches('#'));
         let Some(id) = id else {
@@ -64,14 +64,18 @@ impl<'a, 'input> Reader<'a, 'input> {
     }
 
     /// The union of the shapes in a `<clipPath>`, within the areas that clip them.
-    fn read_clip(&mut self, clip: Node<'a, 'input>, around: Context) -> Result<Region, SvgError> {
+    fn read_clip(
+        &mut self,
+        clip: Node<'a, 'input>,
+        around: Context,
+    ) -> Result<ClipRegion, SvgError> {
         let (style, own) = self.sheet.style(clip, &Style::default());
         let mut context = Context { style, clips: Vec::new(), depth: around.depth + 1, ..around };
         if let Some(text) = clip.attribute("transform") {
             let bad_value = |()| self.bad_value(clip, "transform");
             context.to_page *= transform::parse_attribute(text).map_err(bad_value)?;
         }
-        let mut region = Region::default();
+        let mut region = ClipRegion::default();
         if let Some(value) = &own.clip_path {
             region.within.extend(self.clip_region(value, clip, &context)?);
         }

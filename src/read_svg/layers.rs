@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 use roxmltree::Node;
 
-use super::region::{Keep, Region};
+use super::region::{ClipRegion, Keep};
 use crate::plot::{Layer, Pen, Polylines};
 
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
@@ -79,7 +79,7 @@ impl PenLines {
 
     /// Cuts away what lies below areas. `covers` holds areas with the number of the shape that each
     /// is the fill of, in drawing order: it hides the shapes before it.
-    pub(super) fn hide_below(&mut self, covers: &[(u32, Region)]) {
+    pub(super) fn hide_below(&mut self, covers: &[(u32, ClipRegion)]) {
         let mut kept = Polylines::default();
         for (line, &shape) in self.lines.iter().zip(&self.shapes) {
             let first = covers.partition_point(|&(number, _)| number <= shape);

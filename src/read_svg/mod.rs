@@ -1,4 +1,4 @@
-//! Reads the lines of any SVG: what a pen can follow, in page millimeters, one layer for each pen.
+//! Reads from any SVG the lines that a pen can draw, in page millimeters, one layer for each pen.
 //!
 //! ```text
 //!  bytes ─► decode ─► elements ─► shape ─► dash array ─► clip paths ─► layers
@@ -12,10 +12,18 @@
 //! reported as warnings. What SVG does not show is left out: no paint, `opacity` of 0, `display:
 //! none`.
 //!
-//! `usvg`, which resolves all of this for rendering, was considered. It drops attributes of other
-//! namespaces, so layers and their labels, which choose the pens, would be gone; it keeps coordinates
-//! as `f32`; and its tree has no positions in the file for messages. So this stands on the crates that
-//! it is made of: `roxmltree`, `simplecss`, `svgtypes` and `kurbo`.
+//! `usvg` 0.45 resolves most of this for rendering: units, CSS, transforms, `<use>`, `<switch>`,
+//! gzip. It does not serve pens, as trying it on our test drawings showed:
+//! - Groups keep their `id` alone. Labels of Inkscape layers, which choose the pens and hold AxiDraw's
+//!   controls, are gone: seven labeled layers came out as six nameless groups.
+//! - Coordinates are `f32`. Equal points stay equal, but pieces of one slanted line are no longer
+//!   collinear, so ink drawn twice is not found.
+//! - Clip paths and dash arrays are handed on for a rasterizer; a pen needs the cut lines.
+//! - Broken path data is cut short without a word, and nothing has a position for messages.
+//! - UTF-16 and other encodings are refused.
+//!
+//! So this module stands on the crates that `usvg` is made of: `roxmltree`, `simplecss`, `svgtypes`
+//! and `kurbo`.
 
 mod clip;
 mod dash_array;
@@ -45,9 +53,9 @@ const MAX_COORDINATE_MM: f64 = 1e7;
 /// How to read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SvgOptions {
-    /// How far chords may be from the curves they stand for, in page millimeters.
+    /// Maximum distance between a curve and its chords, in page millimeters.
     pub tolerance_mm: f64,
-    /// Whether opaque fills hide the ink below them. A shape with a fill and no stroke then only
+    /// Whether opaque fills hide the ink below them. A shape with a fill but no stroke then only
     /// hides; otherwise its outline is drawn.
     pub occlude: bool,
     /// Straight pieces beyond which a file is refused.

@@ -8,8 +8,8 @@ use roxmltree::{Document, Node, NodeId};
 use rustc_hash::FxHashMap;
 
 use super::layers::{PenLines, layer_labels};
-use super::region::{Keep, Polygon, Region};
-use super::shape::{Fault, Outline};
+use super::region::{ClipRegion, Keep, Polygon};
+use super::shape::{ShapeFault, ShapeOutline};
 use super::style::{OwnStyle, Style, StyleSheet, parse_length};
 use super::{MAX_COORDINATE_MM, MAX_DEPTH, SvgError, SvgOptions, transform};
 use crate::plot::{Pen, Polylines};
@@ -29,7 +29,7 @@ pub(super) struct Context {
     /// Width and height that percentages are of.
     pub(super) viewport: [f64; 2],
     /// Areas outside of which nothing shows.
-    pub(super) clips: Vec<Rc<Region>>,
+    pub(super) clips: Vec<Rc<ClipRegion>>,
 }
 
 /// What shapes are read for.
@@ -50,15 +50,15 @@ pub(super) struct Reader<'a, 'input> {
     layer_of: FxHashMap<NodeId, usize>,
     pens: Vec<PenLines>,
     pen_of: FxHashMap<(usize, String), usize>,
-    /// Outlines read for their own sake.
+    /// Outlines that serve as areas or boxes and are not drawn.
     pub(super) outlines: Polylines,
     pub(super) purpose: Purpose,
     /// Regions of clip paths by element and coordinate system.
-    pub(super) regions: FxHashMap<(NodeId, [u64; 6]), Rc<Region>>,
+    pub(super) regions: FxHashMap<(NodeId, [u64; 6]), Rc<ClipRegion>>,
     /// Clip paths being read.
     pub(super) open_clips: Vec<NodeId>,
     /// Opaque areas, with the number of shapes below each.
-    covers: Vec<(u32, Region)>,
+    covers: Vec<(u32, ClipRegion)>,
     n_shapes: u32,
     n_segments: usize,
     n_elements: usize,
@@ -306,7 +306,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// Reads the first child whose conditions hold and that can be drawn.
+    /// Reads the first child that can be drawn and whose conditions are met.
     fn read_switch(&mut self, node: Node<'a, 'input>, context: &Context) -> Result<(), SvgError> {
         const DRAWN: [&str; 11] = [
             "svg", "g", "a", "switch", "use", "path", "line", "polyline", "polygon", "rect",
@@ -321,7 +321,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             Some(child) => self.read_element(child, context),
             None => {
                 if node.first_element_child().is_some() {
-                    self.warn_at(node, "no child of <switch> is for this program; none is drawn");
+                    self.warn_at(node, "no child of <switch> meets its conditions; none is drawn");
                 }
                 Ok(())
             }
@@ -394,14 +394,14 @@ impl<'a, 'input> Reader<'a, 'input> {
             return Ok(());
         }
         let mut outline =
-            Outline::new(context.to_page, self.options.tolerance_mm, self.segments_left());
+            ShapeOutline::new(context.to_page, self.options.tolerance_mm, self.segments_left());
         let damage = self.trace(node, &own.geometry, context.viewport, &mut outline)?;
         if let Some(damage) = damage {
             self.warn_at(node, &damage);
         }
         let lines = outline.finish().map_err(|fault| match fault {
-            Fault::Coordinate => SvgError::Coordinate { line: self.line_of(node) },
-            Fault::TooMany => self.too_many_segments(),
+            ShapeFault::Coordinate => SvgError::Coordinate { line: self.line_of(node) },
+            ShapeFault::TooMany => self.too_many_segments(),
         })?;
         if lines.is_empty() {
             return Ok(());
@@ -415,7 +415,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         if self.options.occlude && style.is_opaque() {
             let clips = context.clips.clone();
             if let Some(polygon) = Polygon::new(&lines, style.fill_rule, clips) {
-                let region = Region { polygons: vec![polygon], within: Vec::new() };
+                let region = ClipRegion { polygons: vec![polygon], within: Vec::new() };
                 self.covers.push((self.n_shapes, region));
             }
             if !style.has_stroke() {
@@ -512,8 +512,8 @@ impl<'a, 'input> Reader<'a, 'input> {
     }
 }
 
-/// Whether the conditions of an element hold: this program has no extensions, draws what is for
-/// readers of English, and has all features but `Extensibility`, which is for foreign objects.
+/// Whether an element's conditions are met: this reader has no extensions, prefers English, and supports
+/// every feature except `Extensibility`, which is for foreign objects.
 fn holds_here(node: Node<'_, '_>) -> bool {
     let words = |name: &str| node.attribute(name).map(|value| value.split_whitespace());
     let no_extensions = words("requiredExtensions").is_none_or(|mut words| words.next().is_none());
@@ -529,7 +529,7 @@ fn holds_here(node: Node<'_, '_>) -> bool {
 }
 
 /// The area of a rectangle in user units.
-fn rectangle(to_page: Affine, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> Option<Rc<Region>> {
+fn rectangle(to_page: Affine, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> Option<Rc<ClipRegion>> {
     let corners = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)];
     let mut lines = Polylines::default();
     lines.push(corners.map(|(x, y)| {
@@ -537,5 +537,5 @@ fn rectangle(to_page: Affine, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> Option<Rc<R
         glam::dvec2(p.x, p.y)
     }));
     let polygon = Polygon::new(&lines, Default::default(), Vec::new())?;
-    Some(Rc::new(Region { polygons: vec![polygon], within: Vec::new() }))
+    Some(Rc::new(ClipRegion { polygons: vec![polygon], within: Vec::new() }))
 }

@@ -32,13 +32,13 @@ pub(super) enum Keep {
 
 /// A union of polygons, within other areas.
 #[derive(Debug, Default)]
-pub(super) struct Region {
+pub(super) struct ClipRegion {
     pub(super) polygons: Vec<Polygon>,
     /// The region ends where any of these does.
-    pub(super) within: Vec<Rc<Region>>,
+    pub(super) within: Vec<Rc<ClipRegion>>,
 }
 
-impl Region {
+impl ClipRegion {
     /// Box around the region, those around it left aside. `None` if it is empty.
     pub(super) fn bounds(&self) -> Option<[DVec2; 2]> {
         let boxes = self.polygons.iter().map(|polygon| polygon.bounds);
@@ -147,7 +147,7 @@ pub(super) enum FillRule {
 pub(super) struct Polygon {
     sides: Vec<[DVec2; 2]>,
     rule: FillRule,
-    within: Vec<Rc<Region>>,
+    within: Vec<Rc<ClipRegion>>,
     bounds: [DVec2; 2],
     /// Sides that touch each horizontal band of equal height, as one list and its ends.
     band_sides: Vec<u32>,
@@ -157,7 +157,11 @@ pub(super) struct Polygon {
 
 impl Polygon {
     /// The polygon of `lines`, each closed by a straight side where it is open; `None` without area.
-    pub(super) fn new(lines: &Polylines, rule: FillRule, within: Vec<Rc<Region>>) -> Option<Self> {
+    pub(super) fn new(
+        lines: &Polylines,
+        rule: FillRule,
+        within: Vec<Rc<ClipRegion>>,
+    ) -> Option<Self> {
         let mut sides = Vec::with_capacity(lines.n_points());
         for line in lines.iter() {
             sides.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));

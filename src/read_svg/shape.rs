@@ -14,7 +14,7 @@ use crate::plot::Polylines;
 const ARC_SHARE: f64 = 0.1;
 
 /// Collects the polylines of one shape.
-pub(super) struct Outline {
+pub(super) struct ShapeOutline {
     to_page: Affine,
     tolerance_mm: f64,
     left: usize,
@@ -23,17 +23,17 @@ pub(super) struct Outline {
     /// Last point in user units.
     last: Point,
     start: Point,
-    fault: Option<Fault>,
+    fault: Option<ShapeFault>,
 }
 
 /// Why a shape cannot be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fault {
+pub(super) enum ShapeFault {
     Coordinate,
     TooMany,
 }
 
-impl Outline {
+impl ShapeOutline {
     /// `left` is the number of points that may still be made.
     pub(super) fn new(to_page: Affine, tolerance_mm: f64, left: usize) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl Outline {
         }
     }
 
-    pub(super) fn finish(mut self) -> Result<Polylines, Fault> {
+    pub(super) fn finish(mut self) -> Result<Polylines, ShapeFault> {
         self.end_line();
         self.fault.map_or(Ok(self.lines), Err)
     }
@@ -68,11 +68,11 @@ impl Outline {
         let p = self.to_page * p;
         let reachable = |v: f64| v.abs() <= MAX_COORDINATE_MM;
         if !(reachable(p.x) && reachable(p.y)) {
-            self.fault.get_or_insert(Fault::Coordinate);
+            self.fault.get_or_insert(ShapeFault::Coordinate);
             return None;
         }
         if self.left == 0 {
-            self.fault.get_or_insert(Fault::TooMany);
+            self.fault.get_or_insert(ShapeFault::TooMany);
             return None;
         }
         self.left -= 1;
@@ -124,7 +124,7 @@ impl Outline {
             _ => [path[0].end_point().unwrap_or_default(); 3],
         };
         if !controls.into_iter().all(reachable) {
-            self.fault.get_or_insert(Fault::Coordinate);
+            self.fault.get_or_insert(ShapeFault::Coordinate);
         }
         if self.fault.is_some() {
             return;
@@ -139,21 +139,21 @@ impl Outline {
             }
         });
         if self.left == 0 {
-            self.fault = Some(Fault::TooMany);
+            self.fault = Some(ShapeFault::TooMany);
         }
         self.last = end;
     }
 
     fn arc(&mut self, arc: &SvgArc) {
         if !(arc.radii.x.is_finite() && arc.radii.y.is_finite() && arc.x_rotation.is_finite()) {
-            self.fault.get_or_insert(Fault::Coordinate);
+            self.fault.get_or_insert(ShapeFault::Coordinate);
             return;
         }
         // Checked before the arc is cut into as many curves as its size asks for.
         let size = arc.radii.x.abs().max(arc.radii.y.abs());
         let reach = (arc.to - arc.from).hypot() * self.to_page.determinant().abs().sqrt();
         if reach > MAX_COORDINATE_MM || reach.is_nan() {
-            self.fault.get_or_insert(Fault::Coordinate);
+            self.fault.get_or_insert(ShapeFault::Coordinate);
             return;
         }
         let tolerance = (ARC_SHARE * self.user_tolerance()).max(size / MAX_COORDINATE_MM);
@@ -205,7 +205,7 @@ impl Reader<'_, '_> {
         node: Node<'_, '_>,
         css: &[(String, String)],
         viewport: [f64; 2],
-        outline: &mut Outline,
+        outline: &mut ShapeOutline,
     ) -> Result<Option<String>, SvgError> {
         let [width, height] = viewport;
         let diagonal = ((width * width + height * height) / 2.0).sqrt();
@@ -298,7 +298,7 @@ fn n_numbers(text: &str) -> usize {
 }
 
 /// Draws path data up to its first error, and says where that is.
-fn trace_path(text: &str, outline: &mut Outline) -> Option<String> {
+fn trace_path(text: &str, outline: &mut ShapeOutline) -> Option<String> {
     // The control point that a smooth curve mirrors, and whether it was a cubic's.
     let mut control: Option<(Point, bool)> = None;
     for segment in PathParser::from(text) {
@@ -364,7 +364,7 @@ fn trace_path(text: &str, outline: &mut Outline) -> Option<String> {
 }
 
 /// Clockwise from the end of the upper left corner, as SVG has it.
-fn trace_rectangle([x, y, w, h]: [f64; 4], radii: [f64; 2], outline: &mut Outline) {
+fn trace_rectangle([x, y, w, h]: [f64; 4], radii: [f64; 2], outline: &mut ShapeOutline) {
     let round = radii[0] > 0.0 && radii[1] > 0.0;
     let [rx, ry] = if round { radii } else { [0.0, 0.0] };
     let at = Point::new;

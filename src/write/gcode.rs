@@ -17,7 +17,7 @@ use crate::plot::{Layer, Plot};
 /// Templates and settings of a machine.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Profile {
+pub struct GcodeProfile {
     /// What it is for.
     #[serde(default)]
     pub title: String,
@@ -85,7 +85,7 @@ impl Unit {
 
 /// Why a profile cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Error {
+pub enum GcodeError {
     /// No such profile.
     #[error("unknown G-code profile {name:?}; known are {known}")]
     UnknownProfile {
@@ -118,22 +118,22 @@ pub const DEFAULT_PROFILE: &str = "grbl-servo";
 const PLACEHOLDERS: [&str; 10] =
     ["x", "y", "feed", "layer", "name", "color", "pen_width", "width", "height", "title"];
 
-impl Profile {
+impl GcodeProfile {
     /// A built-in profile: `grbl-servo`, `grbl-z`, `grbl-laser` or `marlin`.
     ///
     /// # Errors
-    /// [`Error::UnknownProfile`].
-    pub fn named(name: &str) -> Result<Self, Error> {
+    /// [`GcodeError::UnknownProfile`].
+    pub fn named(name: &str) -> Result<Self, GcodeError> {
         let mut profiles = profiles_from(include_str!("gcode_profiles.toml"))?;
         let known = profiles.keys().cloned().collect::<Vec<_>>().join(", ");
-        profiles.remove(name).ok_or(Error::UnknownProfile { name: name.to_owned(), known })
+        profiles.remove(name).ok_or(GcodeError::UnknownProfile { name: name.to_owned(), known })
     }
 
     /// Names of the built-in profiles.
     ///
     /// # Errors
     /// Only for a defect in the profiles themselves.
-    pub fn names() -> Result<Vec<String>, Error> {
+    pub fn names() -> Result<Vec<String>, GcodeError> {
         let profiles = profiles_from(include_str!("gcode_profiles.toml"))?;
         Ok(profiles.into_keys().collect())
     }
@@ -142,7 +142,7 @@ impl Profile {
     ///
     /// # Errors
     /// Only for a defect in the profiles themselves.
-    pub fn table(name: &str) -> Result<Option<toml::Table>, Error> {
+    pub fn table(name: &str) -> Result<Option<toml::Table>, GcodeError> {
         let mut all: toml::Table = toml::from_str(include_str!("gcode_profiles.toml"))?;
         Ok(all.remove(name).and_then(|profile| profile.as_table().cloned()))
     }
@@ -151,15 +151,15 @@ impl Profile {
     ///
     /// # Errors
     /// What is missing or unknown, with the line, and unknown placeholders.
-    pub fn from_toml(text: &str) -> Result<Self, Error> {
+    pub fn from_toml(text: &str) -> Result<Self, GcodeError> {
         let profile: Self = toml::from_str(text)?;
         profile.check()?;
         Ok(profile)
     }
 
-    fn check(&self) -> Result<(), Error> {
+    fn check(&self) -> Result<(), GcodeError> {
         if !(self.feed.is_finite() && self.feed > 0.0) {
-            return Err(Error::Feed);
+            return Err(GcodeError::Feed);
         }
         for (template, text) in [
             ("start", &self.start),
@@ -174,7 +174,7 @@ impl Profile {
         ] {
             let unknown = placeholders(text).find(|&(_, name, _)| !PLACEHOLDERS.contains(&name));
             if let Some((_, name, _)) = unknown {
-                return Err(Error::UnknownPlaceholder {
+                return Err(GcodeError::UnknownPlaceholder {
                     template,
                     placeholder: name.to_owned(),
                     known: PLACEHOLDERS.join(", "),
@@ -188,10 +188,10 @@ impl Profile {
 /// Reads named profiles from TOML: one table each.
 ///
 /// # Errors
-/// As [`Profile::from_toml`].
-pub fn profiles_from(text: &str) -> Result<BTreeMap<String, Profile>, Error> {
-    let profiles: BTreeMap<String, Profile> = toml::from_str(text)?;
-    profiles.values().try_for_each(Profile::check)?;
+/// As [`GcodeProfile::from_toml`].
+pub fn profiles_from(text: &str) -> Result<BTreeMap<String, GcodeProfile>, GcodeError> {
+    let profiles: BTreeMap<String, GcodeProfile> = toml::from_str(text)?;
+    profiles.values().try_for_each(GcodeProfile::check)?;
     Ok(profiles)
 }
 
@@ -210,7 +210,7 @@ fn placeholders(text: &str) -> impl Iterator<Item = (&str, &str, &str)> {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Result<()> {
+pub fn write(plot: &Plot, profile: &GcodeProfile, out: &mut dyn io::Write) -> io::Result<()> {
     only_lines(plot, Format::Gcode)?;
     let mut writer = Writer { plot, profile, layer: None, text: String::new() };
     writer.expand(&profile.start, 0.0, 0.0);
@@ -244,7 +244,7 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
 
 struct Writer<'a> {
     plot: &'a Plot,
-    profile: &'a Profile,
+    profile: &'a GcodeProfile,
     layer: Option<&'a Layer>,
     text: String,
 }

@@ -1,8 +1,9 @@
-//! HPGL for real pen plotters: whole units, y up, nothing beyond the machine's limits.
+//! HPGL for real pen plotters: whole units, y up, nothing beyond the machine's hard clip limits.
 //!
-//! Positions are rounded first and then subtracted, so that errors do not add up along a stroke.
-//! Instructions are short, since plotters of that age have buffers of a few hundred bytes. No crate
-//! writes HPGL.
+//! Positions are rounded before they are subtracted, so errors do not add up along a stroke.
+//! Instructions are short, since plotters of that age have buffers of a few hundred bytes. Of the
+//! controls in a layer's label, `!` becomes the machine's pause and `+S` a pen speed, where the machine
+//! has them. No crate writes HPGL.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -12,7 +13,7 @@ use serde::Deserialize;
 
 use super::clip::clip;
 use super::{Format, only_lines};
-use crate::plot::Plot;
+use crate::plot::{Layer, Plot};
 
 /// Points in one `PD` instruction.
 const MAX_POINTS: usize = 16;
@@ -22,7 +23,7 @@ const SIZE_TOLERANCE_MM: f64 = 1.0;
 /// A plotter.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Machine {
+pub struct Plotter {
     /// Name on the command line.
     pub name: String,
     /// Name on the machine.
@@ -34,20 +35,29 @@ pub struct Machine {
     pub manual: String,
     /// Pens it holds.
     pub pens: u32,
-    /// Value of `VS`, the pen's speed in cm/s; the machine's own where there is none.
+    /// Value of `VS`, the pen speed in cm/s; `None` leaves it to the machine.
     #[serde(default)]
     pub speed: Option<u32>,
-    /// Value of `FS`, the pen's force in steps of the machine; its own where there is none.
+    /// Value of `FS`, the pen force in steps of the machine; `None` leaves it to the machine.
     #[serde(default)]
     pub force: Option<u32>,
+    /// Slowest and fastest speed that `VS` takes, in cm/s; `None` if there is no `VS`.
+    #[serde(default)]
+    pub speeds: Option<[u32; 2]>,
+    /// Lowest and highest force that `FS` takes; `None` if there is no `FS`.
+    #[serde(default)]
+    pub forces: Option<[u32; 2]>,
+    /// Instruction that stops the machine until someone presses a button, with its semicolon.
+    #[serde(default)]
+    pub pause: Option<String>,
     /// Papers it takes.
-    pub paper: Vec<Paper>,
+    pub paper: Vec<PlotterPaper>,
 }
 
 /// A paper in a plotter.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Paper {
+pub struct PlotterPaper {
     /// Names, the usual one first.
     pub names: Vec<String>,
     /// What to set or to know.
@@ -76,16 +86,16 @@ pub const DEFAULT_MACHINE: &str = "hp7475a";
 
 /// A plotter with a paper in it: what [`write()`] draws on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct LoadedPlotter {
     /// The plotter.
-    pub machine: Machine,
+    pub machine: Plotter,
     /// The paper.
-    pub paper: Paper,
+    pub paper: PlotterPaper,
 }
 
 /// Why a page cannot be drawn on a plotter.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Error {
+pub enum PlotterError {
     /// No such plotter.
     #[error("unknown plotter {name:?}; known are {known}")]
     UnknownMachine {
@@ -136,6 +146,20 @@ pub enum Error {
         /// How many pens there are.
         pens: u32,
     },
+    /// The machine does not take this pen speed or force.
+    #[error("{machine} takes a pen {what} of {low} to {high}, not {value}")]
+    OutOfRange {
+        /// The plotter.
+        machine: String,
+        /// `speed` or `force`.
+        what: &'static str,
+        /// The value asked for.
+        value: u32,
+        /// The lowest value it takes.
+        low: u32,
+        /// The highest value it takes.
+        high: u32,
+    },
     /// A list of plotters does not read.
     #[error("plotter profiles: {0}")]
     Toml(#[from] toml::de::Error),
@@ -145,52 +169,99 @@ pub enum Error {
 ///
 /// # Errors
 /// None but for a defect in the list itself.
-pub fn machines() -> Result<Vec<Machine>, Error> {
+pub fn machines() -> Result<Vec<Plotter>, PlotterError> {
     machines_from(include_str!("hpgl_machines.toml"))
 }
 
 /// Reads plotters from TOML: an array of tables `machine`, each with an array `paper`.
 ///
 /// # Errors
-/// [`Error::Toml`] with the line.
-pub fn machines_from(text: &str) -> Result<Vec<Machine>, Error> {
+/// [`PlotterError::Toml`] with the line.
+pub fn machines_from(text: &str) -> Result<Vec<Plotter>, PlotterError> {
     #[derive(Deserialize)]
     struct List {
-        machine: Vec<Machine>,
+        machine: Vec<Plotter>,
     }
     Ok(toml::from_str::<List>(text)?.machine)
 }
 
-impl Machine {
+impl Plotter {
     /// A built-in plotter.
     ///
     /// # Errors
-    /// [`Error::UnknownMachine`].
-    pub fn named(name: &str) -> Result<Self, Error> {
+    /// [`PlotterError::UnknownMachine`].
+    pub fn named(name: &str) -> Result<Self, PlotterError> {
         let mut machines = machines()?;
         let known = machines.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ");
         let index = machines
             .iter()
             .position(|m| m.name.eq_ignore_ascii_case(name))
-            .ok_or(Error::UnknownMachine { name: name.to_owned(), known })?;
+            .ok_or(PlotterError::UnknownMachine { name: name.to_owned(), known })?;
         Ok(machines.swap_remove(index))
+    }
+
+    /// The entry of a built-in plotter, for machines that differ from it in a few values.
+    ///
+    /// # Errors
+    /// None but for a defect in the list itself.
+    pub fn table(name: &str) -> Result<Option<toml::Table>, PlotterError> {
+        let mut list: toml::Table = toml::from_str(include_str!("hpgl_machines.toml"))?;
+        let Some(toml::Value::Array(machines)) = list.remove("machine") else { return Ok(None) };
+        let is_it = |table: &toml::Table| {
+            let known = table.get("name").and_then(toml::Value::as_str);
+            known.is_some_and(|known| known.eq_ignore_ascii_case(name))
+        };
+        let mut tables = machines.into_iter().filter_map(|machine| match machine {
+            toml::Value::Table(table) => Some(table),
+            _ => None,
+        });
+        Ok(tables.find(is_it))
+    }
+
+    /// Checks that the machine takes its own speed and force. Machines that do not say what they
+    /// take are believed.
+    ///
+    /// # Errors
+    /// [`PlotterError::OutOfRange`].
+    pub fn check(&self) -> Result<(), PlotterError> {
+        let values = [("speed", self.speed, self.speeds), ("force", self.force, self.forces)];
+        for (what, value, range) in values {
+            if let (Some(value), Some([low, high])) = (value, range)
+                && !(low..=high).contains(&value)
+            {
+                let machine = self.title.clone();
+                return Err(PlotterError::OutOfRange { machine, what, value, low, high });
+            }
+        }
+        Ok(())
+    }
+
+    /// Value of `VS` for a layer: the share of the highest speed that its label asks for, or else the
+    /// machine's setting.
+    fn layer_speed(&self, layer: &Layer) -> Option<u32> {
+        match (layer.speed_percent(), self.speeds) {
+            (Some(percent), Some([slowest, fastest])) => {
+                Some((fastest * percent).div_ceil(100).clamp(slowest, fastest))
+            }
+            _ => self.speed,
+        }
     }
 }
 
-impl Profile {
+impl LoadedPlotter {
     /// The plotter `machine` with the named paper, or the one of the page's size, either way up.
     ///
     /// # Errors
     /// Unknown names, no paper of that size, and layers whose number is beyond the pens.
-    pub fn new(plot: &Plot, machine: &str, paper: Option<&str>) -> Result<Self, Error> {
-        Self::on(plot, Machine::named(machine)?, paper)
+    pub fn new(plot: &Plot, machine: &str, paper: Option<&str>) -> Result<Self, PlotterError> {
+        Self::on(plot, Plotter::named(machine)?, paper)
     }
 
-    /// As [`Profile::new`], for a plotter that is not built in.
+    /// As [`LoadedPlotter::new`], for a plotter that is not built in.
     ///
     /// # Errors
     /// As there.
-    pub fn on(plot: &Plot, machine: Machine, paper: Option<&str>) -> Result<Self, Error> {
+    pub fn on(plot: &Plot, machine: Plotter, paper: Option<&str>) -> Result<Self, PlotterError> {
         let known = || {
             let names = machine.paper.iter().filter_map(|paper| paper.names.first());
             names.map(String::as_str).collect::<Vec<_>>().join(", ")
@@ -200,7 +271,7 @@ impl Profile {
                 .paper
                 .iter()
                 .find(|paper| paper.names.iter().any(|n| n.eq_ignore_ascii_case(name)))
-                .ok_or_else(|| Error::UnknownPaper {
+                .ok_or_else(|| PlotterError::UnknownPaper {
                     machine: machine.title.clone(),
                     name: name.to_owned(),
                     known: known(),
@@ -209,7 +280,7 @@ impl Profile {
                 .paper
                 .iter()
                 .find(|paper| fits(plot, paper, false) || fits(plot, paper, true))
-                .ok_or_else(|| Error::NoPaperOfSize {
+                .ok_or_else(|| PlotterError::NoPaperOfSize {
                     machine: machine.title.clone(),
                     width_mm: plot.width_mm,
                     height_mm: plot.height_mm,
@@ -219,7 +290,7 @@ impl Profile {
         let beyond =
             plot.plotted_layers().find(|layer| !(1..=machine.pens).contains(&layer.number));
         if let Some(layer) = beyond {
-            return Err(Error::NoSuchPen {
+            return Err(PlotterError::NoSuchPen {
                 machine: machine.title.clone(),
                 layer: layer.number,
                 pens: machine.pens,
@@ -229,7 +300,7 @@ impl Profile {
     }
 }
 
-impl Profile {
+impl LoadedPlotter {
     /// What of the page the pen can reach: lowest and highest corner in page millimeters.
     pub fn reach(&self, plot: &Plot) -> [DVec2; 2] {
         let Self { machine, paper } = self;
@@ -247,12 +318,12 @@ impl Profile {
     }
 }
 
-impl Machine {
+impl Plotter {
     /// The widest border of a sheet of this size that the pen cannot reach, in millimeters; `None` if
     /// the machine does not take the sheet. Either side may be the longer one.
     pub fn unreachable_border_mm(&self, width_mm: f64, height_mm: f64) -> Option<f64> {
         let page = Plot { width_mm, height_mm, ..Plot::default() };
-        let [low, high] = Profile::on(&page, self.clone(), None).ok()?.reach(&page);
+        let [low, high] = LoadedPlotter::on(&page, self.clone(), None).ok()?.reach(&page);
         let beyond = dvec2(width_mm, height_mm) - high;
         Some(low.max_element().max(beyond.max_element()))
     }
@@ -261,12 +332,12 @@ impl Machine {
     /// are kept, and other layers get the lowest free ones, in order.
     ///
     /// # Errors
-    /// [`Error::TooManyPens`] if more layers have ink than the machine has pens.
-    pub fn assign_pens(&self, plot: &mut Plot) -> Result<(), Error> {
+    /// [`PlotterError::TooManyPens`] if more layers have ink than the machine has pens.
+    pub fn assign_pens(&self, plot: &mut Plot) -> Result<(), PlotterError> {
         plot.layers.retain(|layer| !layer.lines.is_empty() && layer.is_plotted());
         if plot.layers.len() > self.pens as usize {
             let (machine, needed) = (self.title.clone(), plot.layers.len());
-            return Err(Error::TooManyPens { machine, needed, pens: self.pens });
+            return Err(PlotterError::TooManyPens { machine, needed, pens: self.pens });
         }
         let is_there = |number: u32| (1..=self.pens).contains(&number);
         let numbers = plot.layers.iter().map(|layer| layer.number);
@@ -281,24 +352,24 @@ impl Machine {
 }
 
 /// Whether the page fits the paper only when it is turned a quarter to the left.
-fn is_sideways(plot: &Plot, paper: &Paper) -> bool {
+fn is_sideways(plot: &Plot, paper: &PlotterPaper) -> bool {
     !fits(plot, paper, false) && fits(plot, paper, true)
 }
 
-fn fits(plot: &Plot, paper: &Paper, sideways: bool) -> bool {
+fn fits(plot: &Plot, paper: &PlotterPaper, sideways: bool) -> bool {
     let [width, height] = if sideways { [paper.size[1], paper.size[0]] } else { paper.size };
     (plot.width_mm - width).abs() <= SIZE_TOLERANCE_MM
         && (plot.height_mm - height).abs() <= SIZE_TOLERANCE_MM
 }
 
 /// Writes `plot` for the plotter. Pages upright are turned a quarter to the left if only that fits
-/// the paper; what lies outside of [`Profile::reach`] is cut off.
+/// the paper; what lies outside of [`LoadedPlotter::reach`] is cut off.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Result<()> {
+pub fn write(plot: &Plot, profile: &LoadedPlotter, out: &mut dyn io::Write) -> io::Result<()> {
     only_lines(plot, Format::Hpgl)?;
-    let Profile { machine, paper } = profile;
+    let LoadedPlotter { machine, paper } = profile;
     write!(out, "IN;DF;")?;
     if let Some(ps) = paper.ps {
         write!(out, "PS{ps};")?;
@@ -309,8 +380,13 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
         if layer.lines.is_empty() {
             continue;
         }
+        if let Some(pause) = &machine.pause
+            && layer.pauses()
+        {
+            write!(out, "\n{pause}")?;
+        }
         write!(out, "\nSP{};", layer.number)?;
-        if let Some(speed) = machine.speed {
+        if let Some(speed) = machine.layer_speed(layer) {
             write!(out, "VS{speed};")?;
         }
         if let Some(force) = machine.force {
@@ -327,8 +403,8 @@ pub fn write(plot: &Plot, profile: &Profile, out: &mut dyn io::Write) -> io::Res
 }
 
 /// Page millimeters to plotter units, not yet rounded.
-fn to_units(p: DVec2, plot: &Plot, profile: &Profile) -> DVec2 {
-    let Profile { machine, paper } = profile;
+fn to_units(p: DVec2, plot: &Plot, profile: &LoadedPlotter) -> DVec2 {
+    let LoadedPlotter { machine, paper } = profile;
     let mut p = p;
     if is_sideways(plot, paper) {
         p = dvec2(p.y, plot.width_mm - p.x);

@@ -20,7 +20,7 @@ const VERSION: u32 = 1;
 
 /// All but the strokes.
 #[derive(Serialize)]
-struct Head {
+struct JsonStroke {
     format: &'static str,
     version: u32,
     camera: CameraRecord,
@@ -29,7 +29,7 @@ struct Head {
 
 #[derive(Serialize, Deserialize)]
 struct CameraRecord {
-    projection: ProjectionName,
+    projection: JsonProjection,
     eye: [f64; 3],
     target: [f64; 3],
     up: [f64; 3],
@@ -40,7 +40,7 @@ struct CameraRecord {
 
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum ProjectionName {
+enum JsonProjection {
     Perspective,
     Orthographic,
 }
@@ -78,7 +78,7 @@ pub fn write(
     page_from_image: DAffine2,
     out: &mut dyn io::Write,
 ) -> io::Result<()> {
-    let head = Head {
+    let head = JsonStroke {
         format: FORMAT,
         version: VERSION,
         camera: CameraRecord::from(camera),
@@ -110,9 +110,9 @@ impl From<&Camera> for CameraRecord {
     fn from(camera: &Camera) -> Self {
         let (projection, fov, near) = match camera.projection() {
             Projection::Perspective { fov_deg, near } => {
-                (ProjectionName::Perspective, Some(fov_deg), near)
+                (JsonProjection::Perspective, Some(fov_deg), near)
             }
-            Projection::Orthographic => (ProjectionName::Orthographic, None, DEFAULT_NEAR),
+            Projection::Orthographic => (JsonProjection::Orthographic, None, DEFAULT_NEAR),
         };
         Self {
             projection,
@@ -142,16 +142,16 @@ pub enum ReadCameraError {
 /// See [`ReadCameraError`].
 pub fn read_camera(text: &str) -> Result<Camera, ReadCameraError> {
     #[derive(Deserialize)]
-    struct File {
+    struct JsonDrawing {
         camera: CameraRecord,
     }
-    let record = serde_json::from_str::<File>(text)?.camera;
+    let record = serde_json::from_str::<JsonDrawing>(text)?.camera;
     let projection = match record.projection {
-        ProjectionName::Perspective => Projection::Perspective {
+        JsonProjection::Perspective => Projection::Perspective {
             fov_deg: record.fov.unwrap_or(DEFAULT_FOV_DEG),
             near: record.near.unwrap_or(DEFAULT_NEAR),
         },
-        ProjectionName::Orthographic => Projection::Orthographic,
+        JsonProjection::Orthographic => Projection::Orthographic,
     };
     let point = DVec3::from_array;
     Ok(Camera::new(point(record.eye), point(record.target), point(record.up), projection)?)

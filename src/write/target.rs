@@ -4,6 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
+use super::dxf::DxfScale;
 use super::svg::StrokeElement;
 use super::{Format, NoFills, dxf, svg};
 use crate::plot::Plot;
@@ -19,8 +20,8 @@ use super::{gcode, hpgl};
 pub enum Target {
     /// Scalable vector graphics.
     Svg(StrokeElement),
-    /// Polylines for CAD and CAM programs.
-    Dxf,
+    /// Polylines for CAD and CAM programs, and what their coordinates mean.
+    Dxf(DxfScale),
     /// A page for print.
     #[cfg(feature = "pdf")]
     Pdf,
@@ -29,10 +30,10 @@ pub enum Target {
     Png(Resolution, Marks),
     /// HPGL for a plotter.
     #[cfg(feature = "plotters")]
-    Hpgl(Box<hpgl::Machine>),
+    Hpgl(Box<hpgl::Plotter>),
     /// G-code for a machine.
     #[cfg(feature = "plotters")]
-    Gcode(Box<gcode::Profile>),
+    Gcode(Box<gcode::GcodeProfile>),
 }
 
 /// Why a plot is not written.
@@ -54,11 +55,11 @@ pub enum WriteError {
     /// The plot does not suit the plotter.
     #[cfg(feature = "plotters")]
     #[error(transparent)]
-    Hpgl(#[from] hpgl::Error),
+    Hpgl(#[from] hpgl::PlotterError),
     /// The profile is damaged.
     #[cfg(feature = "plotters")]
     #[error(transparent)]
-    Gcode(#[from] gcode::Error),
+    Gcode(#[from] gcode::GcodeError),
     /// The picture cannot be made.
     #[cfg(feature = "png")]
     #[error(transparent)]
@@ -84,15 +85,17 @@ impl Target {
     pub fn usual(format: Format) -> Result<Self, WriteError> {
         Ok(match format {
             Format::Svg => Self::Svg(StrokeElement::default()),
-            Format::Dxf => Self::Dxf,
+            Format::Dxf => Self::Dxf(DxfScale::default()),
             #[cfg(feature = "pdf")]
             Format::Pdf => Self::Pdf,
             #[cfg(feature = "png")]
             Format::Png => Self::Png(Resolution::default(), Marks::default()),
             #[cfg(feature = "plotters")]
-            Format::Hpgl => Self::Hpgl(Box::new(hpgl::Machine::named(hpgl::DEFAULT_MACHINE)?)),
+            Format::Hpgl => Self::Hpgl(Box::new(hpgl::Plotter::named(hpgl::DEFAULT_MACHINE)?)),
             #[cfg(feature = "plotters")]
-            Format::Gcode => Self::Gcode(Box::new(gcode::Profile::named(gcode::DEFAULT_PROFILE)?)),
+            Format::Gcode => {
+                Self::Gcode(Box::new(gcode::GcodeProfile::named(gcode::DEFAULT_PROFILE)?))
+            }
             Format::Json => return Err(WriteError::OnlyStrokes),
             #[allow(unreachable_patterns, reason = "reached where features are off")]
             format => return Err(WriteError::FormatOff(format)),
@@ -107,14 +110,14 @@ impl Target {
 pub fn write(plot: &Plot, target: &Target, out: &mut dyn io::Write) -> Result<(), WriteError> {
     match target {
         Target::Svg(element) => Ok(svg::write(plot, *element, out)?),
-        Target::Dxf => Ok(dxf::write(plot, out)?),
+        Target::Dxf(scale) => Ok(dxf::write(plot, *scale, out)?),
         #[cfg(feature = "pdf")]
         Target::Pdf => Ok(super::pdf::write(plot, out)?),
         #[cfg(feature = "png")]
         Target::Png(resolution, marks) => Ok(png::write_marked(plot, *resolution, *marks, out)?),
         #[cfg(feature = "plotters")]
         Target::Hpgl(machine) => {
-            let profile = hpgl::Profile::on(plot, machine.as_ref().clone(), None)?;
+            let profile = hpgl::LoadedPlotter::on(plot, machine.as_ref().clone(), None)?;
             Ok(hpgl::write(plot, &profile, out)?)
         }
         #[cfg(feature = "plotters")]

@@ -284,6 +284,7 @@ impl SurfaceArgs {
             lines,
             page: output.target.within_reach(page.options()),
             unit_mm: page.unit_mm(),
+            dxf_scale: page.dxf_scale(),
             pen_width_mm: page.pen_width_mm(),
             output,
         })

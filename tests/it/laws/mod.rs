@@ -8,6 +8,7 @@ mod closed_forms;
 mod coincidences;
 mod covered_cells;
 mod drawings;
+mod dxf;
 pub(crate) mod engines;
 mod extent;
 mod framing;

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, dvec2};
 use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
-use hiddenline::stages::optimize::{Effort, Graph, Joints, Options, optimize_lines, order};
+use hiddenline::stages::optimize::{
+    Effort, Graph, Joints, OptimizeOptions, optimize, optimize_lines, optimize_watched, order,
+};
 use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
 use proptest::prelude::*;
 
@@ -81,8 +83,13 @@ fn efforts() -> [Effort; 3] {
     [Effort::None, Effort::Fast, Effort::Best]
 }
 
-fn exact(effort: Effort) -> Options {
-    Options { join_tolerance_mm: Some(0.0), overlap_mm: 0.0, effort, ..Options::default() }
+fn exact(effort: Effort) -> OptimizeOptions {
+    OptimizeOptions {
+        join_tolerance_mm: Some(0.0),
+        overlap_mm: 0.0,
+        effort,
+        ..OptimizeOptions::default()
+    }
 }
 
 fn distance_to(p: DVec2, lines: &Polylines) -> f64 {
@@ -151,7 +158,7 @@ proptest! {
         }
         let before = polylines(&lines);
         for effort in efforts() {
-            let after = optimize_lines(&before, None, &Options { effort, ..Options::default() }).lines;
+            let after = optimize_lines(&before, None, &OptimizeOptions { effort, ..OptimizeOptions::default() }).lines;
             prop_assert!(deviation(&before, &after) <= 0.001 + 1e-12);
             prop_assert!(deviation(&after, &before) <= 0.001 + 1e-12);
             let same = order(&before, effort).lines;
@@ -165,7 +172,7 @@ proptest! {
         line in prop::collection::vec((0.0..10.0f64, 0.0..10.0f64), 3..60), tolerance in 0.01..2.0f64,
     ) {
         let before = polylines(&[line.iter().map(|&(x, y)| dvec2(x, y)).collect()]);
-        let options = Options { simplify_mm: tolerance, ..exact(Effort::None) };
+        let options = OptimizeOptions { simplify_mm: tolerance, ..exact(Effort::None) };
         let after = optimize_lines(&before, None, &options).lines;
         prop_assert!(deviation(&before, &after) <= tolerance + 1e-9);
         prop_assert!(after.n_points() <= before.n_points());
@@ -179,7 +186,7 @@ proptest! {
             other.iter_mut().for_each(|line| line.reverse());
         }
         let [a, b] = [lines, other]
-            .map(|lines| optimize_lines(&polylines(&lines), None, &Options::default()).lines);
+            .map(|lines| optimize_lines(&polylines(&lines), None, &OptimizeOptions::default()).lines);
         prop_assert_eq!(a, b);
     }
 }
@@ -235,7 +242,7 @@ fn the_number_of_threads_does_not_matter() {
     let lines = warped_net(25);
     let run = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| optimize_lines(&lines, None, &Options::default()).lines)
+        pool.install(|| optimize_lines(&lines, None, &OptimizeOptions::default()).lines)
     };
     assert_eq!(run(1), run(4));
 }
@@ -255,7 +262,7 @@ fn numbered_points_are_joints_wherever_they_are() {
 #[test]
 fn chains_of_near_points_do_not_collapse() {
     let line: Vec<DVec2> = (0..=1000).map(|i| dvec2(f64::from(i) * 0.01, 0.0)).collect();
-    let options = Options { join_tolerance_mm: Some(0.05), ..exact(Effort::None) };
+    let options = OptimizeOptions { join_tolerance_mm: Some(0.05), ..exact(Effort::None) };
     let joined = optimize_lines(&polylines(&[line]), None, &options).lines;
     let ends: Vec<&[DVec2]> = joined.iter().collect();
     assert_eq!(ends.len(), 1);
@@ -275,7 +282,7 @@ fn dots_are_kept_unless_a_line_ends_there() {
 fn the_shortest_strokes_are_dropped_and_small_gaps_closed() {
     let ring = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.05, 0.05)].map(|(x, y)| dvec2(x, y));
     let lines = polylines(&[ring.to_vec(), vec![dvec2(20.0, 0.0), dvec2(20.05, 0.0)]]);
-    let options = Options { shortest_mm: 0.1, ..exact(Effort::None) };
+    let options = OptimizeOptions { shortest_mm: 0.1, ..exact(Effort::None) };
     let joined = optimize_lines(&lines, None, &options).lines;
     let strokes: Vec<&[DVec2]> = joined.iter().collect();
     assert_eq!(strokes.len(), 1);
@@ -288,7 +295,7 @@ fn numbers_that_are_none_do_not_stop_it() {
         vec![dvec2(f64::NAN, 0.0), dvec2(1.0, 0.0), dvec2(2.0, 0.0)],
         vec![dvec2(f64::INFINITY, 0.0), dvec2(1.0, f64::NEG_INFINITY)],
     ]);
-    let joined = optimize_lines(&lines, None, &Options::default()).lines;
+    let joined = optimize_lines(&lines, None, &OptimizeOptions::default()).lines;
     assert_eq!(joined.iter().collect::<Vec<_>>(), [[dvec2(1.0, 0.0), dvec2(2.0, 0.0)]]);
 }
 
@@ -428,5 +435,39 @@ fn closed_trails_that_cross_are_one_stroke() {
     {
         let joined = optimize_lines(&polylines(&lines), None, &exact(Effort::Fast)).lines;
         assert_eq!(joined.len(), n);
+    }
+}
+
+#[test]
+fn the_share_done_grows_from_nothing_to_all() {
+    let square = |x: f64| vec![(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 0.0)];
+    for closed in [false, true] {
+        let strokes: Vec<Vec<(f64, f64)>> =
+            (0..3000)
+                .map(|i| f64::from(i * 7919 % 3000))
+                .map(|x| {
+                    if closed {
+                        square(2.0 * x)
+                    } else {
+                        vec![(2.0 * x, 0.0), (2.0 * x + 1.0, 5.0)]
+                    }
+                })
+                .collect();
+        let mut lines = Polylines::default();
+        strokes.iter().for_each(|s| lines.push(s.iter().map(|&(x, y)| dvec2(x, y))));
+        let layer = Layer { number: 1, lines, ..Layer::default() };
+        let plot = Plot { layers: vec![layer.clone(), layer], ..Plot::default() };
+        for effort in [Effort::None, Effort::Fast, Effort::Best] {
+            let options = OptimizeOptions { effort, ..OptimizeOptions::default() };
+            let mut shares = Vec::new();
+            let watched = optimize_watched(&plot, &options, &mut |share| shares.push(share));
+            assert_eq!(watched, optimize(&plot, &options), "watching changes nothing");
+            assert_eq!(shares[0], 0.0);
+            assert!(shares.is_sorted() && *shares.last().unwrap() <= 1.0, "{shares:?}");
+            if effort != Effort::None {
+                assert_eq!(*shares.last().unwrap(), 1.0);
+                assert!(shares.windows(2).all(|pair| pair[1] - pair[0] < 0.4), "{shares:?}");
+            }
+        }
     }
 }

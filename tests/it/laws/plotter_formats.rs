@@ -96,7 +96,7 @@ fn read_hpgl(text: &str) -> (Vec<Vec<DVec2>>, Vec<u32>) {
 #[test]
 fn hpgl_draws_what_the_page_shows() {
     let plot = waves(297.0, 210.0);
-    let profile = hpgl::Profile::new(&plot, "hp7475a", None).unwrap();
+    let profile = hpgl::LoadedPlotter::new(&plot, "hp7475a", None).unwrap();
     let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
     assert!(text.starts_with("IN;DF;PS4;"));
     let (strokes, pens) = read_hpgl(&text);
@@ -125,7 +125,8 @@ fn hpgl_never_leaves_the_hard_clip_limits() {
                 .map(|a| (w / 2.0 + w * a.cos(), h / 2.0 + h * a.sin()))
                 .collect();
             let plot = plot(w, h, &[&[&star, &[(-50.0, -50.0), (w + 50.0, h + 50.0)]]]);
-            let profile = hpgl::Profile::on(&plot, machine.clone(), Some(&paper.names[0])).unwrap();
+            let profile =
+                hpgl::LoadedPlotter::on(&plot, machine.clone(), Some(&paper.names[0])).unwrap();
             let bytes = written(|out| hpgl::write(&plot, &profile, out));
             let (strokes, _) = read_hpgl(&String::from_utf8(bytes).unwrap());
             assert!(strokes.len() > 20);
@@ -141,7 +142,7 @@ fn hpgl_never_leaves_the_hard_clip_limits() {
 fn hpgl_turns_upright_pages_to_the_left() {
     // The bottom of the page comes to lie on the right.
     let plot = plot(210.0, 297.0, &[&[&[(100.0, 250.0), (110.0, 250.0)]]]);
-    let profile = hpgl::Profile::new(&plot, "hp7475a", None).unwrap();
+    let profile = hpgl::LoadedPlotter::new(&plot, "hp7475a", None).unwrap();
     let bytes = written(|out| hpgl::write(&plot, &profile, out));
     let (strokes, _) = read_hpgl(&String::from_utf8(bytes).unwrap());
     let mm: Vec<DVec2> = strokes[0]
@@ -154,13 +155,14 @@ fn hpgl_turns_upright_pages_to_the_left() {
 #[test]
 fn hpgl_names_what_a_plotter_cannot_do() {
     let a4 = plot(297.0, 210.0, &[&[]]);
-    let error = |result: Result<hpgl::Profile, hpgl::Error>| result.unwrap_err().to_string();
-    assert!(error(hpgl::Profile::new(&a4, "hp1", None)).contains("hp7475a"));
-    assert!(error(hpgl::Profile::new(&a4, "hp7475a", Some("a0"))).contains("a4, a3"));
+    let error =
+        |result: Result<hpgl::LoadedPlotter, hpgl::PlotterError>| result.unwrap_err().to_string();
+    assert!(error(hpgl::LoadedPlotter::new(&a4, "hp1", None)).contains("hp7475a"));
+    assert!(error(hpgl::LoadedPlotter::new(&a4, "hp7475a", Some("a0"))).contains("a4, a3"));
     let odd = plot(100.0, 100.0, &[&[]]);
-    assert!(error(hpgl::Profile::new(&odd, "hp7475a", None)).contains("100 × 100 mm"));
+    assert!(error(hpgl::LoadedPlotter::new(&odd, "hp7475a", None)).contains("100 × 100 mm"));
     let many = plot(297.0, 210.0, &[&[] as &[&[_]]; 7]);
-    assert!(error(hpgl::Profile::new(&many, "hp7475a", None)).contains("it holds 6"));
+    assert!(error(hpgl::LoadedPlotter::new(&many, "hp7475a", None)).contains("it holds 6"));
 }
 
 /// What a machine would draw: strokes with the pen down, and the feeds seen.
@@ -202,7 +204,7 @@ fn every_gcode_profile_lifts_the_pen_and_keeps_the_lengths() {
     let plot = waves(297.0, 210.0);
     let wanted = strokes_of(&plot);
     for name in ["grbl-servo", "grbl-z", "grbl-laser", "marlin"] {
-        let profile = gcode::Profile::named(name).unwrap();
+        let profile = gcode::GcodeProfile::named(name).unwrap();
         let bytes = written(|out| gcode::write(&plot, &profile, out));
         let text = String::from_utf8(bytes).unwrap();
         let (strokes, lifts) = read_gcode(&text, |line| match name {
@@ -228,7 +230,7 @@ fn every_gcode_profile_lifts_the_pen_and_keeps_the_lengths() {
 #[test]
 fn names_cannot_break_out_of_gcode_comments() {
     let plot = plot(100.0, 100.0, &[&[&[(1.0, 1.0), (2.0, 2.0)]]]);
-    let profile = gcode::Profile::named("grbl-servo").unwrap();
+    let profile = gcode::GcodeProfile::named("grbl-servo").unwrap();
     let text = String::from_utf8(written(|out| gcode::write(&plot, &profile, out))).unwrap();
     assert!(text.contains("; pen 1: visible_ _M5__\n"), "{text}");
 }
@@ -245,15 +247,15 @@ fn own_gcode_profiles_are_checked() {
             .replace("F{feed}\n'", "F{feed}\\n\"")
             .replace("'G0", "\"G0")
             .replace("'G1", "\"G1");
-    let profile = gcode::Profile::from_toml(&good).unwrap();
+    let profile = gcode::GcodeProfile::from_toml(&good).unwrap();
     let plot = plot(254.0, 254.0, &[&[&[(25.4, 228.6), (50.8, 254.0)]]]);
     let text = String::from_utf8(written(|out| gcode::write(&plot, &profile, out))).unwrap();
     assert_eq!(text, "G20\nG0 X1 Y1\nD\nG1 X2 Y0 F60\nU\n");
-    let error = |text: &str| gcode::Profile::from_toml(text).unwrap_err().to_string();
+    let error = |text: &str| gcode::GcodeProfile::from_toml(text).unwrap_err().to_string();
     assert!(error(&good.replace("{feed}", "{speed}")).contains("{speed}"));
     assert!(error(&good.replace("feed = 60", "feed = -1")).contains("feed"));
     assert!(error(&good.replace("decimals = 2", "")).contains("decimals"));
-    assert!(gcode::Profile::named("mill").unwrap_err().to_string().contains("marlin"));
+    assert!(gcode::GcodeProfile::named("mill").unwrap_err().to_string().contains("marlin"));
 }
 
 #[test]
@@ -266,7 +268,8 @@ fn dxf_holds_the_same_polylines() {
             &[&[(5.0, 5.0), (5.0, 5.0)]],
         ],
     );
-    let text = String::from_utf8(written(|out| dxf::write(&plot, out))).unwrap();
+    let text =
+        String::from_utf8(written(|out| dxf::write(&plot, dxf::DxfScale::default(), out))).unwrap();
     let lines: Vec<&str> = text.split("\r\n").collect();
     let pairs: Vec<(i32, &str)> =
         lines.chunks_exact(2).map(|pair| (pair[0].trim().parse().unwrap(), pair[1])).collect();

@@ -4,7 +4,7 @@
 use glam::{DVec2, dvec2};
 use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
 use hiddenline::stages::optimize::{
-    Effort, Graph, Joints, Options, optimize_lines, split_by_distance,
+    Effort, Graph, Joints, OptimizeOptions, optimize_lines, split_by_distance,
 };
 use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
 use hiddenline::stages::write::{dxf, gcode, hpgl, pdf};
@@ -142,7 +142,8 @@ fn group(record: &[(i32, String)], code: i32) -> &str {
 #[test]
 fn a_tag_reader_finds_layers_colors_and_ink_in_dxf() {
     let plot = plot();
-    let text = String::from_utf8(written(|out| dxf::write(&plot, out))).unwrap();
+    let text =
+        String::from_utf8(written(|out| dxf::write(&plot, dxf::DxfScale::default(), out))).unwrap();
     let records = read_dxf(&text);
     let named = |name: &str| records.iter().find(|r| r[0].1 == name).unwrap();
     assert_eq!(group(named("$INSUNITS"), 70), "4", "millimeters");
@@ -189,7 +190,7 @@ fn gcode_follows_each_template_in_its_place() {
              move = 'G0 {{x}} {{y}};'\nline = 'G1 {{x}} {{y}};'\nlayer_start = 'S{{layer}};'\n\
              layer_end = 'E{{layer}};'\npen_change = 'C{{layer}};'\nend = 'Z;'\n"
         );
-        gcode::Profile::from_toml(&text).unwrap()
+        gcode::GcodeProfile::from_toml(&text).unwrap()
     };
     let mut plot = plot();
     plot.layers[0].lines = polylines(&[&[(1.0, 2.0), (3.0, 4.0)]]);
@@ -226,8 +227,10 @@ fn hpgl_puts_the_page_where_the_plotter_has_its_origin() {
     let wanted = [
         // (100 − 10) / 0.02488 and (206 − 50) / 0.02488.
         ("hp7475a", [3617, 6270]),
-        // Drawn upside down: (297 − 100 − 15) / 0.02488 and (196 − 210 + 50) / 0.02488.
-        ("designmate", [7315, 1447]),
+        // Drawn upside down: (297 − 100 − 15) / 0.025 and (196 − 210 + 50) / 0.025.
+        ("designmate", [7280, 1440]),
+        // (100 − 15) / 0.025 and (200 − 50) / 0.025.
+        ("hp7440a", [3400, 6000]),
         // (100 − 12) / 0.025 and (206 − 50) / 0.025.
         ("hp7550", [3520, 6240]),
         ("dxy", [4000, 6400]),
@@ -236,7 +239,7 @@ fn hpgl_puts_the_page_where_the_plotter_has_its_origin() {
         let mut plot = plot();
         plot.layers.truncate(1);
         plot.layers[0].lines = polylines(&[&[(100.0, 50.0), (150.0, 60.0)]]);
-        let profile = hpgl::Profile::new(&plot, name, None).unwrap();
+        let profile = hpgl::LoadedPlotter::new(&plot, name, None).unwrap();
         let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
         assert_eq!(read_hpgl(&text).0, [start], "{name}");
     }
@@ -247,7 +250,7 @@ fn hpgl_sets_speed_and_force_for_each_pen_and_puts_the_last_one_away() {
     let plot = plot();
     let mut machine = hpgl::machines().unwrap().swap_remove(0);
     (machine.speed, machine.force) = (Some(20), Some(3));
-    let profile = hpgl::Profile::on(&plot, machine, None).unwrap();
+    let profile = hpgl::LoadedPlotter::on(&plot, machine, None).unwrap();
     let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
     let (_, instructions) = read_hpgl(&text);
     let set: Vec<&str> = instructions
@@ -267,7 +270,8 @@ fn a_hundred_millimeters_are_a_hundred_on_every_plotter() {
             plot.layers.truncate(1);
             let (x, y) = (w / 2.0 - 50.0, h / 2.0);
             plot.layers[0].lines = polylines(&[&[(x, y), (x + 100.0, y)]]);
-            let profile = hpgl::Profile::on(&plot, machine.clone(), Some(&paper.names[0])).unwrap();
+            let profile =
+                hpgl::LoadedPlotter::on(&plot, machine.clone(), Some(&paper.names[0])).unwrap();
             let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
             let drawn = text.split("PD").nth(1).unwrap().split([',', ';']).next().unwrap();
             let length = drawn.parse::<f64>().unwrap().abs() * machine.unit;
@@ -290,7 +294,7 @@ fn what_lies_in_reach_is_not_cut_and_what_does_not_is() {
                 let mut plot = Plot { width_mm: w, height_mm: h, ..plot() };
                 plot.layers.truncate(1);
                 let named = Some(paper.names[0].as_str());
-                let profile = hpgl::Profile::on(&plot, machine.clone(), named).unwrap();
+                let profile = hpgl::LoadedPlotter::on(&plot, machine.clone(), named).unwrap();
                 let [low, high] = profile.reach(&plot);
                 let middle = low.midpoint(high);
                 let ends = |by: f64| {
@@ -333,7 +337,8 @@ fn joints_survive_simplifying() {
         &[(0.0, 0.0), (0.0, 50.0), (-10.0, 60.0)],
         &[(0.0, 0.0), (-30.0, 0.0)],
     ]);
-    let options = Options { simplify_mm: 0.2, effort: Effort::None, ..Options::default() };
+    let options =
+        OptimizeOptions { simplify_mm: 0.2, effort: Effort::None, ..OptimizeOptions::default() };
     let found = optimize_lines(&lines, None, &options).lines;
     let through = found.iter().filter(|line| line.contains(&dvec2(10.0, 0.05))).count();
     assert!(through >= 1, "{found:?}");
@@ -347,8 +352,11 @@ fn ink_there_and_back_survives_simplifying() {
         &[(0.0, 0.0), (10.0, 0.0), (4.0, 0.0)][..],
         &[(0.0, 0.0), (10.0, 5.0), (2.0, 1.0), (8.0, 4.0)],
     ] {
-        let options =
-            Options { join_tolerance_mm: None, effort: Effort::None, ..Options::default() };
+        let options = OptimizeOptions {
+            join_tolerance_mm: None,
+            effort: Effort::None,
+            ..OptimizeOptions::default()
+        };
         let found = optimize_lines(&polylines(&[stroke]), None, &options).lines;
         assert_eq!(found.iter().next().unwrap().len(), stroke.len(), "{found:?}");
         assert!((found.length_mm() - polylines(&[stroke]).length_mm()).abs() < 1e-9);
@@ -452,4 +460,36 @@ fn slanted_ink_that_nearly_overlaps_is_found_with_what_it_costs() {
     assert!((found.saved_mm - 400.0).abs() < 45.0, "{found:?}");
     assert!(found.tolerance_mm >= 0.005 && found.tolerance_mm <= 0.02, "{found:?}");
     assert_eq!(near_overlap(&self::plot()), None);
+}
+
+/// Two marks that a drawing has 100 mm apart are that far apart in every machine's units.
+#[test]
+fn machines_have_the_units_of_their_manuals() {
+    for machine in hpgl::machines().unwrap() {
+        // HP's 7475A is the one plotter with 40.2 steps per millimeter; all others have 40.
+        let per_mm = if machine.name == "hp7475a" { 40.193 } else { 40.0 };
+        for paper in &machine.paper {
+            let [w, h] = paper.size;
+            let mut plot = Plot { width_mm: w, height_mm: h, ..plot() };
+            plot.layers.truncate(1);
+            let marks = [w / 2.0 - 50.0, w / 2.0 + 50.0];
+            let mark = |x: f64| [(x, h / 2.0), (x, h / 2.0 + 5.0)];
+            plot.layers[0].lines = polylines(&[&mark(marks[0]), &mark(marks[1])]);
+            let name = Some(paper.names[0].as_str());
+            let plotter = hpgl::LoadedPlotter::on(&plot, machine.clone(), name).unwrap();
+            let text = String::from_utf8(written(|out| hpgl::write(&plot, &plotter, out))).unwrap();
+            let starts = read_hpgl(&text).0;
+            let apart = f64::from((starts[1][0] - starts[0][0]).abs());
+            assert!((apart - 100.0 * per_mm).abs() <= 1.0, "{}: {apart}", machine.name);
+            // What is reached lies on the sheet.
+            let corner = |x: i32, y: i32| {
+                let [left, top] = paper.origin;
+                (left + f64::from(x) * machine.unit, top - f64::from(y) * machine.unit)
+            };
+            let ((x0, y0), (x1, y1)) =
+                (corner(paper.x[0], paper.y[0]), corner(paper.x[1], paper.y[1]));
+            assert!(x0 >= -1e-9 && x1 <= w + 1e-9, "{} {name:?}: {x0} {x1}", machine.name);
+            assert!(y1 >= -1e-9 && y0 <= h + 1e-9, "{} {name:?}: {y1} {y0}", machine.name);
+        }
+    }
 }

@@ -39,6 +39,7 @@ fn options(hidden: HiddenLines) -> PlotOptions {
         pens: Vec::new(),
         hidden,
         dash: Dash::default(),
+        keep_dashes_whole: false,
         title: "a <title> & more".into(),
         source: "hiddenline draw 'a<b'".into(),
     }

@@ -60,6 +60,17 @@ fn ink_off_the_page_is_cropped_and_told() {
 }
 
 #[test]
+fn dots_off_the_page_are_lost_and_lines_that_no_machine_draws_are_not() {
+    let layer = |label: &str, d: &str| {
+        format!("<g inkscape:groupmode='layer' inkscape:label='{label}'><path d='{d}'/></g>")
+    };
+    let content = layer("%guide", "M100 100H400") + &layer("1 ink", "M-5 5h0M300 5h0M10 10h50");
+    let folder = folder_with("a.svg", A4, &content);
+    let (_, said) = optimized(folder.path(), &[], "o.svg");
+    assert!(said.contains("warning: 2 dots are cut off outside of the page"), "{said}");
+}
+
+#[test]
 fn drawings_are_put_on_other_sheets() {
     let folder = folder_with("a.svg", A4, "<path d='M100 100H200V150'/>");
     let page = |svg: &str, size: &str| assert!(svg.contains(size), "{}", &svg[..300]);
@@ -253,4 +264,119 @@ fn pens_can_have_speed_and_pause_for_axidraw() {
         let (succeeded, _, said) = drawn(bad);
         assert!(!succeeded && said.contains("give"), "{said}");
     }
+}
+
+/// A polyline of a DXF: the name of its layer, and its points.
+type DxfLine = (String, Vec<[f64; 2]>);
+
+/// Draws the cube as DXF; its polylines, and the text of the file.
+fn dxf_lines(folder: &Path, arguments: &[&str]) -> (Vec<DxfLine>, String) {
+    let all = [&["draw", "cube.obj", "-o", "o.dxf"], arguments].concat();
+    let run = hiddenline(folder, &all);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let file = fs::read_to_string(folder.join("o.dxf")).unwrap().replace("\r\n", "\n");
+    let tags: Vec<&str> = file.lines().collect();
+    let mut lines: Vec<DxfLine> = Vec::new();
+    let mut kind = "";
+    for tag in tags.chunks(2) {
+        match (tag[0].trim(), tag[1]) {
+            ("0", name) => {
+                kind = name;
+                if kind == "POLYLINE" {
+                    lines.push(Default::default());
+                }
+            }
+            ("8", layer) if kind == "POLYLINE" => lines.last_mut().unwrap().0 = layer.to_owned(),
+            ("10", x) if kind == "VERTEX" => {
+                lines.last_mut().unwrap().1.push([x.parse().unwrap(), 0.0]);
+            }
+            ("20", y) if kind == "VERTEX" => {
+                lines.last_mut().unwrap().1.last_mut().unwrap()[1] = y.parse().unwrap();
+            }
+            _ => {}
+        }
+    }
+    (lines, file)
+}
+
+fn with_cube() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
+    folder
+}
+
+#[test]
+fn dxf_has_whole_hidden_lines_with_a_linetype_on_request() {
+    let folder = with_cube();
+    let hidden = |arguments: &[&str]| {
+        let (lines, file) = dxf_lines(folder.path(), arguments);
+        let on = |line: &&DxfLine| line.0.contains("HIDDEN");
+        (lines.iter().filter(on).cloned().collect::<Vec<_>>(), file)
+    };
+    let (solid, _) = hidden(&["--hidden", "solid"]);
+    let (exploded, file) = hidden(&["--hidden", "dashed"]);
+    assert!(exploded.len() > 5 * solid.len() && !file.contains("DASHED"));
+    let native = &["--hidden", "dashed", "--dash", "4,1", "--dxf-dashes", "native"];
+    let (whole, file) = hidden(native);
+    assert_eq!(whole, solid);
+    assert!(file.contains("\nDASHED\n") && file.contains("\n 49\n4\n 49\n-1\n"), "{file}");
+    // A pen for both keeps them apart, since a layer has one linetype.
+    let one_pen = ["--pen", "visible=1", "--pen", "hidden=1"];
+    let (whole, _) = hidden(&[native, &one_pen[..]].concat());
+    assert_eq!(whole.len(), solid.len());
+    let run = hiddenline(folder.path(), &["draw", "cube.obj", "--dxf-dashes", "native"]);
+    assert!(text(&run.stderr).contains("--dxf-dashes has no effect on svg"));
+}
+
+#[test]
+fn dxf_has_a_layer_for_each_kind_of_line() {
+    let folder = with_cube();
+    let (lines, file) = dxf_lines(folder.path(), &[]);
+    let mut names: Vec<&str> = lines.iter().map(|line| line.0.as_str()).collect();
+    names.dedup();
+    assert_eq!(names, ["1_SILHOUETTE", "2_CREASE"], "{file}");
+    assert!(!file.contains("_MESH"), "no layer without lines");
+}
+
+#[test]
+fn dxf_at_a_scale_has_the_model_s_own_lengths() {
+    let folder = with_cube();
+    for (scale, unit, number) in [("1:2", "cm", "5"), ("10:1", "mm", "4"), ("1:24", "in", "1")] {
+        let view = ["--view", "top", "--drawing-scale", scale, "--unit", unit];
+        let (lines, file) = dxf_lines(folder.path(), &view);
+        assert!(file.contains(&format!("$INSUNITS\n 70\n{number}\n")), "{file:.200}");
+        let points = lines.iter().flat_map(|line| &line.1);
+        let (low, high) = points.fold((f64::MAX, f64::MIN), |m, p| (m.0.min(p[0]), m.1.max(p[0])));
+        assert!((high - low - 2.0).abs() < 2e-4, "{scale} {unit}: {}", high - low);
+    }
+}
+
+#[test]
+fn plotters_keep_the_controls_of_labels_or_say_that_they_cannot() {
+    let layer = |label: &str, y: u32| {
+        format!(
+            "<g inkscape:groupmode='layer' inkscape:label='{label}'><path d='M50 {y}h100'/></g>"
+        )
+    };
+    let layers = [layer("1 +S50 first", 50), layer("!2 second", 60), layer("3 third", 70)].concat();
+    let folder = folder_with("a.svg", A4, &layers);
+    let (plt, said) = optimized(folder.path(), &["--machine", "hp7550"], "o.plt");
+    assert!(!said.contains("warning"), "{said}");
+    let layers: Vec<&str> = plt.split("SP").collect();
+    assert!(layers[1].starts_with("1;VS40;") && layers[1].contains("NR;"), "{plt}");
+    assert!(layers[2].starts_with("2;\n") && !layers[2].contains("NR;"), "{plt}");
+    let (plt, said) = optimized(folder.path(), &["--machine", "hp7475a"], "o.plt");
+    assert!(said.contains("HP 7475A cannot pause before layer 2"), "{said}");
+    assert!(plt.contains("SP1;VS19;") && !plt.contains("NR"), "{plt}");
+    let (_, said) = optimized(folder.path(), &["--machine", "artisan"], "o.plt");
+    assert!(said.contains("`+S` of layer 1 has no effect"), "{said}");
+    let strict = ["optimize", "a.svg", "--strict", "--machine", "hp7475a", "-o", "n.plt"];
+    assert_fails(&hiddenline(folder.path(), &strict), 1, "cannot pause");
+    let config = "[machine.mine]\nlike = 'hp7550'\nspeed = 20\nforce = 3\n\
+                  [machine.heavy]\nlike = 'hp7550'\nforce = 9\n";
+    fs::write(folder.path().join("hiddenline.toml"), config).unwrap();
+    let (plt, _) = optimized(folder.path(), &["--machine", "mine"], "o.plt");
+    assert!(plt.contains("SP1;VS40;FS3;") && plt.contains("SP3;VS20;FS3;"), "{plt}");
+    let heavy = ["optimize", "a.svg", "--machine", "heavy", "-o", "n.plt"];
+    assert_fails(&hiddenline(folder.path(), &heavy), 1, "takes a pen force of 1 to 8, not 9");
 }

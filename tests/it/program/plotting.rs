@@ -8,7 +8,7 @@ use std::time::Duration;
 use glam::{DVec2, dvec2};
 use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
 use hiddenline::stages::optimize::{
-    Effort, Graph, JOIN_TOLERANCE_MM, Joints, Options, optimize, optimize_lines, order,
+    Effort, Graph, JOIN_TOLERANCE_MM, Joints, OptimizeOptions, optimize, optimize_lines, order,
     remove_overlaps,
 };
 use hiddenline::stages::plot::Polylines;
@@ -316,7 +316,7 @@ fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
         ..Default::default()
     };
     let plot = hiddenline::stages::plot::Plot { layers: vec![layer], ..Default::default() };
-    let (done, _) = optimize(&plot, &Options::default());
+    let (done, _) = optimize(&plot, &OptimizeOptions::default());
     let work = estimate_lines(&done.layers[0].lines, &Motion::SAXI);
     eprintln!("{work:?}");
     assert_eq!(work.strokes, 134);
@@ -327,7 +327,7 @@ fn a_wire_drawing_has_as_few_strokes_as_there_can_be() {
 #[test]
 fn a_wire_drawing_takes_much_less_time_than_strokes_paired_by_chance() {
     let Some(lines) = wire("20000") else { return };
-    let ours = optimize_lines(&lines, None, &Options::default()).lines;
+    let ours = optimize_lines(&lines, None, &OptimizeOptions::default()).lines;
     assert_eq!(ours.len(), 454);
     let mut graph = Graph::new(&lines, Joints::Near(JOIN_TOLERANCE_MM));
     remove_overlaps(&mut graph, 0.0);
@@ -345,7 +345,7 @@ fn joints_move_by_half_of_the_tolerance_at_most() {
         [[dvec2(10.0, 10.0), dvec2(20.001, 10.0)], [dvec2(20.003, 10.0), dvec2(20.0, 30.0)]];
     let mut polylines = Polylines::default();
     lines.iter().for_each(|line| polylines.push(line.iter().copied()));
-    let joined = optimize_lines(&polylines, None, &Options::default()).lines;
+    let joined = optimize_lines(&polylines, None, &OptimizeOptions::default()).lines;
     assert_eq!(joined.len(), 1);
     let corner = joined.iter().next().unwrap()[1];
     let farthest = |p: DVec2| p.distance(corner);

@@ -41,6 +41,7 @@ fn plot(filled: &Filled, camera: &Camera, options: &PageOptions, seam_mm: f64) -
         pens: Vec::new(),
         hidden: Default::default(),
         dash: Dash::default(),
+        keep_dashes_whole: false,
         title: String::new(),
         source: String::new(),
     };
@@ -253,8 +254,11 @@ fn formats_without_areas_refuse_them_and_others_have_them() {
     let filled = fill(&scene, &camera, &FillOptions::default()).unwrap();
     let (plot, _) = plot(&filled, &camera, &PageOptions::default(), 0.05);
     let mut out = Vec::new();
-    let profile = gcode::Profile::named("grbl-servo").unwrap();
-    for result in [dxf::write(&plot, &mut out), gcode::write(&plot, &profile, &mut out)] {
+    let profile = gcode::GcodeProfile::named("grbl-servo").unwrap();
+    for result in [
+        dxf::write(&plot, dxf::DxfScale::default(), &mut out),
+        gcode::write(&plot, &profile, &mut out),
+    ] {
         let message = result.unwrap_err().to_string();
         assert!(message.contains("no filled areas; write svg, pdf or png"), "{message}");
     }
