@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::layers::{PenLines, layer_labels};
 use super::region::{ClipRegion, Keep, Polygon};
-use super::shape::{ShapeFault, ShapeOutline};
+use super::shape::{ShapeFault, ShapeOutline, trace};
 use super::style::{OwnStyle, Style, StyleSheet, parse_length};
 use super::{MAX_COORDINATE_MM, MAX_DEPTH, SvgError, SvgOptions, transform};
 use crate::plot::{Pen, Polylines};
@@ -395,7 +395,9 @@ impl<'a, 'input> Reader<'a, 'input> {
         }
         let mut outline =
             ShapeOutline::new(context.to_page, self.options.tolerance_mm, self.segments_left());
-        let damage = self.trace(node, &own.geometry, context.viewport, &mut outline)?;
+        let damage = trace(node, &own.geometry, context.viewport, &mut outline, |name, of| {
+            self.length(node, name, of)
+        })?;
         if let Some(damage) = damage {
             self.warn_at(node, &damage);
         }

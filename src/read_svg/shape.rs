@@ -5,7 +5,6 @@ use kurbo::{Affine, Arc, Ellipse, PathEl, Point, Shape, SvgArc, Vec2};
 use roxmltree::Node;
 use svgtypes::{PathParser, PathSegment, PointsParser};
 
-use super::reader::Reader;
 use super::style::parse_length;
 use super::{MAX_COORDINATE_MM, SvgError};
 use crate::plot::Polylines;
@@ -197,90 +196,89 @@ impl ShapeOutline {
     }
 }
 
-impl Reader<'_, '_> {
-    /// Draws the outline of a shape; `css` holds attributes that style sheets set. Says what is wrong
-    /// with data of which only the beginning could be drawn.
-    pub(super) fn trace(
-        &self,
-        node: Node<'_, '_>,
-        css: &[(String, String)],
-        viewport: [f64; 2],
-        outline: &mut ShapeOutline,
-    ) -> Result<Option<String>, SvgError> {
-        let [width, height] = viewport;
-        let diagonal = ((width * width + height * height) / 2.0).sqrt();
-        let from_css = |name: &str| {
-            css.iter().rev().find(|(property, _)| property == name).map(|(_, value)| value.as_str())
-        };
-        let length = |name: &str, of: f64| match from_css(name) {
-            Some(text) => match parse_length(text, of) {
-                Ok(length) => Ok(length),
-                // What cannot be read in CSS has no effect.
-                Err(()) => self.length(node, name, of),
-            },
-            None => self.length(node, name, of),
-        };
-        let number = |name: &str, of: f64| Ok::<_, SvgError>(length(name, of)?.unwrap_or(0.0));
-        match node.tag_name().name() {
-            "path" => {
-                let data = match from_css("d") {
-                    Some(css) => css_path(css),
-                    None => node.attribute("d").unwrap_or_default(),
-                };
-                return Ok(trace_path(data, outline));
-            }
-            "line" => {
-                outline.move_to(Point::new(number("x1", width)?, number("y1", height)?));
-                outline.line_to(Point::new(number("x2", width)?, number("y2", height)?));
-            }
-            name @ ("polyline" | "polygon") => {
-                let text = node.attribute("points").unwrap_or_default();
-                let mut n_read = 0;
-                for (i, (x, y)) in PointsParser::from(text).enumerate() {
-                    let p = Point::new(x, y);
-                    if i == 0 {
-                        outline.move_to(p)
-                    } else {
-                        outline.line_to(p)
-                    }
-                    n_read = i + 1;
-                }
-                if name == "polygon" {
-                    outline.close();
-                }
-                if 2 * n_read < n_numbers(text) {
-                    return Ok(Some(format!(
-                        "the points of <{name}> are drawn up to an error after the first {n_read}"
-                    )));
-                }
-            }
-            "rect" => {
-                let (x, y) = (number("x", width)?, number("y", height)?);
-                let (w, h) = (number("width", width)?, number("height", height)?);
-                let rx = length("rx", width)?;
-                let ry = length("ry", height)?;
-                let radius = |own: Option<f64>, other: Option<f64>, side: f64| {
-                    own.or(other).unwrap_or(0.0).clamp(0.0, side / 2.0)
-                };
-                if w > 0.0 && h > 0.0 {
-                    trace_rectangle([x, y, w, h], [radius(rx, ry, w), radius(ry, rx, h)], outline);
-                }
-            }
-            "circle" | "ellipse" => {
-                let center = Point::new(number("cx", width)?, number("cy", height)?);
-                let radii = match node.tag_name().name() {
-                    "circle" => Vec2::splat(number("r", diagonal)?),
-                    _ => Vec2::new(number("rx", width)?, number("ry", height)?),
-                };
-                if radii.x > 0.0 && radii.y > 0.0 {
-                    let ellipse = Ellipse::new(center, radii, 0.0);
-                    outline.closed_shape(&ellipse, radii.x.max(radii.y));
-                }
-            }
-            _ => {}
+/// Draws the outline of a shape; `css` holds attributes that style sheets set, and `attribute` reads a
+/// length from the element itself, given what a percentage is of. Returns what is wrong with data of
+/// which only the beginning could be drawn.
+pub(super) fn trace(
+    node: Node<'_, '_>,
+    css: &[(String, String)],
+    viewport: [f64; 2],
+    outline: &mut ShapeOutline,
+    attribute: impl Fn(&str, f64) -> Result<Option<f64>, SvgError>,
+) -> Result<Option<String>, SvgError> {
+    let [width, height] = viewport;
+    let diagonal = ((width * width + height * height) / 2.0).sqrt();
+    let from_css = |name: &str| {
+        css.iter().rev().find(|(property, _)| property == name).map(|(_, value)| value.as_str())
+    };
+    let length = |name: &str, of: f64| match from_css(name) {
+        Some(text) => match parse_length(text, of) {
+            Ok(length) => Ok(length),
+            // What cannot be read in CSS has no effect.
+            Err(()) => attribute(name, of),
+        },
+        None => attribute(name, of),
+    };
+    let number = |name: &str, of: f64| Ok::<_, SvgError>(length(name, of)?.unwrap_or(0.0));
+    match node.tag_name().name() {
+        "path" => {
+            let data = match from_css("d") {
+                Some(css) => css_path(css),
+                None => node.attribute("d").unwrap_or_default(),
+            };
+            return Ok(trace_path(data, outline));
         }
-        Ok(None)
+        "line" => {
+            outline.move_to(Point::new(number("x1", width)?, number("y1", height)?));
+            outline.line_to(Point::new(number("x2", width)?, number("y2", height)?));
+        }
+        name @ ("polyline" | "polygon") => {
+            let text = node.attribute("points").unwrap_or_default();
+            let mut n_read = 0;
+            for (i, (x, y)) in PointsParser::from(text).enumerate() {
+                let p = Point::new(x, y);
+                if i == 0 {
+                    outline.move_to(p)
+                } else {
+                    outline.line_to(p)
+                }
+                n_read = i + 1;
+            }
+            if name == "polygon" {
+                outline.close();
+            }
+            if 2 * n_read < n_numbers(text) {
+                return Ok(Some(format!(
+                    "the points of <{name}> are drawn up to an error after the first {n_read}"
+                )));
+            }
+        }
+        "rect" => {
+            let (x, y) = (number("x", width)?, number("y", height)?);
+            let (w, h) = (number("width", width)?, number("height", height)?);
+            let rx = length("rx", width)?;
+            let ry = length("ry", height)?;
+            let radius = |own: Option<f64>, other: Option<f64>, side: f64| {
+                own.or(other).unwrap_or(0.0).clamp(0.0, side / 2.0)
+            };
+            if w > 0.0 && h > 0.0 {
+                trace_rectangle([x, y, w, h], [radius(rx, ry, w), radius(ry, rx, h)], outline);
+            }
+        }
+        "circle" | "ellipse" => {
+            let center = Point::new(number("cx", width)?, number("cy", height)?);
+            let radii = match node.tag_name().name() {
+                "circle" => Vec2::splat(number("r", diagonal)?),
+                _ => Vec2::new(number("rx", width)?, number("ry", height)?),
+            };
+            if radii.x > 0.0 && radii.y > 0.0 {
+                let ellipse = Ellipse::new(center, radii, 0.0);
+                outline.closed_shape(&ellipse, radii.x.max(radii.y));
+            }
+        }
+        _ => {}
     }
+    Ok(None)
 }
 
 /// The data in CSS's `path("…")`; nothing for `none`.
