@@ -317,6 +317,7 @@ impl PlacedPlot {
     ///
     /// Each area is outlined in its own color by a line `seam_mm` wide, for which see
     /// [`Fills::seam_mm`](crate::plot::Fills::seam_mm); it may reach half of that into the margin.
+    /// Outlines on top of areas are drawn by the pen of the first layer of lines.
     #[must_use]
     pub fn with_fills(mut self, page: &Page, filled: &[FillLayer], seam_mm: f64) -> Self {
         let window = page.window();
@@ -326,10 +327,14 @@ impl PlacedPlot {
                 areas::placed(&layer.fills, &page.page_from_image, &window, seam_mm);
             self.cropped |= cropped;
             let [r, g, b] = layer.color;
+            let pen = match self.plot.layers.first() {
+                Some(lines) if fills.has_outlines() => lines.pen.clone(),
+                _ => Pen { width_mm: seam_mm, color: format!("#{r:02x}{g:02x}{b:02x}") },
+            };
             layers.push(Layer {
                 number: layers.len() as u32 + 1,
                 name: layer.name.clone(),
-                pen: Pen { width_mm: seam_mm, color: format!("#{r:02x}{g:02x}{b:02x}") },
+                pen,
                 fills,
                 ..Layer::default()
             });

@@ -141,6 +141,12 @@ impl Polylines {
         self.iter().flat_map(|line| line.windows(2)).map(|s| s[0].distance(s[1])).sum::<f64>() + 0.0
     }
 
+    /// Polyline number `line`. Panics when there is no such polyline.
+    fn line(&self, line: usize) -> &[DVec2] {
+        let start = line.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
+        &self.points[start..self.ends[line] as usize]
+    }
+
     /// The polylines in order.
     pub fn iter(&self) -> impl Iterator<Item = &[DVec2]> {
         self.ends.iter().scan(0, |start, &end| {
@@ -151,13 +157,14 @@ impl Polylines {
     }
 }
 
-/// Filled areas in one flat array: each with a color and closed rings, filled where an odd number of
-/// them is around.
+/// Filled areas in one flat array: each with a color and closed rings, filled by the even-odd rule.
+/// An area may have outlines, which the layer's pen draws over it before the next area is painted.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Fills {
     points: Vec<DVec2>,
     ring_ends: Vec<u32>,
-    areas: Vec<([u8; 3], u32)>,
+    outlines: Polylines,
+    areas: Vec<AreaEnds>,
     /// Each area is also outlined in its own color with a line of this width, so that no background
     /// shines through between neighbors where a screen or printer smooths their borders. 0 leaves
     /// areas as they are, as machines that cut want it.
@@ -175,6 +182,14 @@ pub struct FillLayer {
     pub fills: Fills,
 }
 
+/// Where an area ends among the rings and the outlines.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct AreaEnds {
+    color: [u8; 3],
+    rings: u32,
+    outlines: u32,
+}
+
 /// One filled area.
 #[derive(Debug, Clone, Copy)]
 pub struct Area<'a> {
@@ -182,6 +197,7 @@ pub struct Area<'a> {
     pub color: [u8; 3],
     fills: &'a Fills,
     rings: (u32, u32),
+    outlines: (u32, u32),
 }
 
 impl Fills {
@@ -191,7 +207,20 @@ impl Fills {
     where
         R: IntoIterator<Item = DVec2>,
     {
-        let n_rings = self.ring_ends.len();
+        self.push_outlined(color, rings, []);
+    }
+
+    /// Adds an area over all others, and polylines over the area. Rings of fewer than three points
+    /// and polylines of fewer than two are left out.
+    pub fn push_outlined<R>(
+        &mut self,
+        color: [u8; 3],
+        rings: impl IntoIterator<Item = R>,
+        outlines: impl IntoIterator<Item = Vec<DVec2>>,
+    ) where
+        R: IntoIterator<Item = DVec2>,
+    {
+        let (n_rings, n_outlines) = (self.ring_ends.len(), self.outlines.len());
         for ring in rings {
             let start = self.points.len();
             self.points.extend(ring);
@@ -201,9 +230,18 @@ impl Fills {
                 self.ring_ends.push(self.points.len() as u32);
             }
         }
-        if self.ring_ends.len() > n_rings {
-            self.areas.push((color, self.ring_ends.len() as u32));
+        for outline in outlines {
+            self.outlines.push(outline);
         }
+        if self.ring_ends.len() > n_rings || self.outlines.len() > n_outlines {
+            let (rings, outlines) = (self.ring_ends.len() as u32, self.outlines.len() as u32);
+            self.areas.push(AreaEnds { color, rings, outlines });
+        }
+    }
+
+    /// Whether any area has outlines.
+    pub fn has_outlines(&self) -> bool {
+        !self.outlines.is_empty()
     }
 
     /// Number of areas.
@@ -223,10 +261,11 @@ impl Fills {
 
     /// The areas in the order of painting.
     pub fn iter(&self) -> impl Iterator<Item = Area<'_>> {
-        self.areas.iter().scan(0, |start, &(color, end)| {
-            let rings = (*start, end);
-            *start = end;
-            Some(Area { color, fills: self, rings })
+        self.areas.iter().scan(AreaEnds::default(), |before, &ends| {
+            let rings = (before.rings, ends.rings);
+            let outlines = (before.outlines, ends.outlines);
+            *before = ends;
+            Some(Area { color: ends.color, fills: self, rings, outlines })
         })
     }
 }
@@ -239,5 +278,11 @@ impl<'a> Area<'a> {
             let start = ring.checked_sub(1).map_or(0, |before| fills.ring_ends[before] as usize);
             &fills.points[start..fills.ring_ends[ring] as usize]
         })
+    }
+
+    /// The polylines that are drawn over it. A closed one ends at its first point.
+    pub fn outlines(&self) -> impl Iterator<Item = &'a [DVec2]> + use<'a> {
+        let outlines = &self.fills.outlines;
+        (self.outlines.0 as usize..self.outlines.1 as usize).map(|line| outlines.line(line))
     }
 }

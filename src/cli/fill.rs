@@ -9,13 +9,14 @@ use clap::Args;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
-use hiddenline::stages::engines::face::Prepared;
+use hiddenline::stages::engines::face::{FaceEngine, FaceError, Prepared};
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
 use hiddenline::stages::page::{PageOptions, PlotOptions};
 use hiddenline::stages::read::material_colors;
-use hiddenline::stages::shading::fill::{FillOptions, Filled, fill_prepared};
+use hiddenline::stages::shading::fill::{FillError, FillOptions, Filled, fill_prepared};
+use hiddenline::stages::shading::white::paint_over;
 use hiddenline::stages::strokes::Strokes;
 use hiddenline::stages::surface::DEFAULT_SAMPLES;
 use hiddenline::stages::timing::timed;
@@ -24,6 +25,7 @@ use hiddenline::stages::write::NoFills;
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
 use super::input::{Input, InputArgs};
+use super::messages::counted;
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::PageArgs;
 use super::paper::{Run, placed};
@@ -43,6 +45,8 @@ Examples:
       Exact regions beside each other, for a cutter.
   hiddenline fill part.stl --depth-cue 0.6 --no-edges -o part.png
       What is far away pales.
+  hiddenline fill house.obj --white -o house.pdf
+      The lines of `draw`, hidden ones painted over in white.
   hiddenline fill part.stl --turntable 24 -o turn.svg
       turn-001.svg to turn-024.svg, once around.
   hiddenline fill --expr \"sinc(r)\" --x=-9:9 --y=-9:9 --palette 5 -o hat.svg
@@ -110,6 +114,8 @@ pub(super) struct Job {
     turntable: Option<u16>,
     /// `None` for areas only.
     edges: Option<DrawOptions>,
+    /// Whether hidden edges are painted over instead of left out.
+    paints_over: bool,
     page: PageOptions,
     pen_width_mm: f64,
     output: OutputOptions,
@@ -138,7 +144,18 @@ impl FillArgs {
         let pen_width_mm = page.pen_width_mm();
         let lines =
             DrawOptions { lines: edges.lines, crease_deg: edges.crease, ..Default::default() };
+        if areas.white && edges.lines.has_outline() {
+            return Err("--white draws whole edges; leave outline out of --lines".into());
+        }
         let fill = areas.options();
+        if areas.white && !paints_over(fill.engine) {
+            let name = fill.engine.name();
+            return Err(format!(
+                "{name} does not paint faces over each other; with --white take --engine bsp, \
+                 depth-sort or octree"
+            )
+            .into());
+        }
         fill.check().map_err(|error| error.to_string())?;
         Ok(Job {
             input,
@@ -148,6 +165,7 @@ impl FillArgs {
             seam_mm: areas.seam,
             turntable: areas.turntable,
             edges: (!edges.no_edges).then_some(lines),
+            paints_over: areas.white,
             page: output.target.within_reach(page.options()),
             pen_width_mm,
             output,
@@ -169,7 +187,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         fill.materials.push(found.colors);
         run.notes.warnings.extend(found.warnings);
     }
-    let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))?;
+    let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))
+        .map_err(|error| with_remedy(&error.into(), job))?;
     run.stats.engine = prepared.engine().name().into();
     run.stats.count(MeshSize::of(&scene));
     let Some(n) = job.turntable else {
@@ -224,12 +243,20 @@ impl Picture<'_> {
         let extent = self.frame.unwrap_or_else(|| scene.extent(camera));
         let page = placed(&extent, camera, &job.page)?;
         options.settings.leaf = Some(job.leaf_mm / page.mm_per_image_unit());
-        let filled: Filled = timed(&mut run.stats.seconds.visibility, || {
-            fill_prepared(self.prepared, camera, &options)
-        })?;
+        let filled: Filled = timed(&mut run.stats.seconds.visibility, || match &job.edges {
+            Some(edges) if job.paints_over => {
+                let DrawOptions { lines, crease_deg, .. } = *edges;
+                let (prepared, settings) = (self.prepared, &options.settings);
+                let picture = paint_over(prepared, camera, settings, lines, crease_deg)?;
+                run.notes.warnings.extend(left_out(picture.n_left_out));
+                Ok(picture.filled)
+            }
+            _ => fill_prepared(self.prepared, camera, &options),
+        })
+        .map_err(|error| with_remedy(&error, job))?;
         run.progress.stage("drawing");
         let mut edges = Strokes::default();
-        if let Some(options) = &job.edges {
+        if let Some(options) = job.edges.as_ref().filter(|_| !job.paints_over) {
             let drawn = draw(scene, camera, options, page.mm_per_image_unit());
             run.stats.add(&drawn);
             edges = drawn.drawing;
@@ -246,7 +273,7 @@ impl Picture<'_> {
             source: source::source(config::arguments()),
         };
         let mut placed = page.plot(&edges, options).with_fills(&page, &filled.layers, job.seam_mm);
-        if job.edges.is_none() {
+        if job.edges.is_none() || job.paints_over {
             placed.plot.layers.retain(|layer| !layer.fills.is_empty());
         }
         if placed.cropped {
@@ -255,6 +282,39 @@ impl Picture<'_> {
         }
         run.plot_to(path, &page.paper.description(), placed.plot, &OptimizeOptions::for_drawings())
     }
+}
+
+/// What to say of lines that no painted face carries.
+fn left_out(n: usize) -> Option<String> {
+    let lines = counted(n, "line is on", "lines are on");
+    (n > 0).then(|| {
+        format!(
+            "{lines} no painted face (where faces cross, wires, faces seen edge-on) and left out; \
+             `hiddenline draw` has them"
+        )
+    })
+}
+
+/// What went wrong and how to mend it.
+fn with_remedy(error: &FillError, job: &Job) -> String {
+    let FillError::Engine(cause) = error else { return error.to_string() };
+    if matches!(cause, FaceError::TooManyLeaves { .. }) {
+        return format!("{error}; give a larger --leaf");
+    }
+    let is_possible = |engine: &&FaceEngine| {
+        **engine != job.fill.engine && (!job.paints_over || paints_over(**engine))
+    };
+    let names: Vec<&str> =
+        cause.instead().iter().filter(is_possible).map(|engine| engine.name()).collect();
+    match names[..] {
+        [] => format!("{error}; take a simpler model, or the lines of `hiddenline draw`"),
+        _ => format!("{error}; take --engine {}", names.join(" or ")),
+    }
+}
+
+/// Whether an engine paints faces over each other, from far to near.
+fn paints_over(engine: FaceEngine) -> bool {
+    matches!(engine, FaceEngine::DepthSort | FaceEngine::Bsp | FaceEngine::Octree)
 }
 
 /// `NAME.svg` to `NAME-001.svg`.

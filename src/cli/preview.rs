@@ -3,6 +3,7 @@
 mod picture;
 
 use std::error::Error;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -124,9 +125,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         Subject::read(read, &job.view, job.edges, finds_bends, &run.progress, &mut run.stats)?;
     run.notes.add(notes);
     if job.options.fit_fov && camera.projection() == Projection::Orthographic {
-        return Err(
-            format!("{}; give --projection perspective", PreviewError::NoFieldOfView).into()
-        );
+        return Err(with_remedy(&PreviewError::NoFieldOfView).into());
     }
     run.progress.stage("drawing");
     let edges = job.edges.map(|lines| {
@@ -143,6 +142,26 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let contents = format!(" by {}", job.engine);
     let what = Written { paper: &format!("{width} x {height} pixels"), contents };
     run.write(job.output.path.as_deref(), what, false, None, |out| {
-        preview::write(&scene, &camera, &job.options, edges.as_ref(), out)
+        Ok::<_, PictureError>(preview::write(&scene, &camera, &job.options, edges.as_ref(), out)?)
     })
+}
+
+/// Why there is no picture, with the remedy.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", with_remedy(.0))]
+struct PictureError(#[from] PreviewError);
+
+impl From<io::Error> for PictureError {
+    fn from(error: io::Error) -> Self {
+        Self(error.into())
+    }
+}
+
+/// What went wrong and how to mend it.
+fn with_remedy(error: &PreviewError) -> String {
+    match error {
+        PreviewError::NoOrder(_) => format!("{error}; take --engine z-buffer"),
+        PreviewError::NoFieldOfView => format!("{error}; give --projection perspective"),
+        PreviewError::Size(..) | PreviewError::Write(_) => error.to_string(),
+    }
 }

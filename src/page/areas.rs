@@ -26,7 +26,14 @@ pub(super) fn placed(
         let points = || rings.iter().flatten();
         if points().all(|p| p.cmpge(low).all() && p.cmple(high).all()) {
             let clamp = |p: &DVec2| p.clamp(window.low, window.high);
-            result.push(area.color, rings.iter().map(|ring| ring.iter().map(clamp)));
+            let outlines =
+                area.outlines().map(|line| line.iter().map(|&p| clamp(&map.transform_point2(p))));
+            let outlines = outlines.map(Iterator::collect);
+            result.push_outlined(
+                area.color,
+                rings.iter().map(|ring| ring.iter().map(clamp)),
+                outlines,
+            );
             continue;
         }
         cropped = true;
@@ -46,6 +53,13 @@ pub(super) fn placed(
                     .map(|ring| ring.iter().map(|side| point(side.from)).collect::<Vec<_>>()),
             );
         }
+        let mut outlines = Vec::new();
+        for outline in area.outlines() {
+            let mut line: Vec<DVec2> = outline.iter().map(|&p| map.transform_point2(p)).collect();
+            window.crop(&mut line, |piece| outlines.push(piece.to_vec()));
+        }
+        // Over all parts: an area without rings.
+        result.push_outlined(area.color, [] as [Vec<DVec2>; 0], outlines);
     }
     (result, cropped)
 }

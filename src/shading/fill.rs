@@ -93,6 +93,9 @@ pub enum FillError {
     /// A palette is for shaded pictures.
     #[error("order, depth and splits are told by many colors; leave out the palette")]
     DebugInks,
+    /// The engine does not paint one face over another.
+    #[error("{0} lays areas beside each other, and painting over needs them from far to near")]
+    NotPaintedOver(&'static str),
 }
 
 /// A filled picture, in image coordinates.

@@ -4,5 +4,7 @@ pub mod light;
 
 pub mod fill;
 
+pub mod white;
+
 #[cfg(feature = "png")]
 pub mod preview;

@@ -115,8 +115,8 @@ pub fn write_marked(
     for layer in plot.plotted_layers() {
         let color = parse_color(&layer.pen.color)?;
         gray &= is_gray(color) && layer.fills.iter().all(|area| is_gray(area.color));
-        fill(&layer.fills, px_per_mm, &mut pixmap);
         let width = layer.pen.width_mm;
+        fill(&layer.fills, (width, color), px_per_mm, &mut pixmap);
         if marks.order {
             let strokes: Vec<&[DVec2]> = layer.lines.iter().collect();
             let tone = |i: usize| (n_drawn + i) * ORDER_COLORS / n_strokes.max(1);
@@ -201,8 +201,8 @@ fn trace(line: &[DVec2], px_per_mm: f64, builder: &mut PathBuilder) {
     }
 }
 
-/// Paints the areas of a layer one over the other.
-fn fill(fills: &Fills, px_per_mm: f64, pixmap: &mut Pixmap) {
+/// Paints the areas of a layer one over the other, each with its outlines by a pen.
+fn fill(fills: &Fills, (width_mm, pen_color): (f64, [u8; 3]), px_per_mm: f64, pixmap: &mut Pixmap) {
     // With less than a pixel, what is behind shines through where two areas share one.
     let seam = round_stroke(((fills.seam_mm * px_per_mm) as f32).max(1.0));
     for area in fills.iter() {
@@ -211,14 +211,16 @@ fn fill(fills: &Fills, px_per_mm: f64, pixmap: &mut Pixmap) {
             trace(ring, px_per_mm, &mut builder);
             builder.close();
         }
-        let Some(path) = builder.finish() else { continue };
-        let mut paint = Paint { anti_alias: true, ..Paint::default() };
-        let [r, g, b] = area.color;
-        paint.set_color_rgba8(r, g, b, 255);
-        pixmap.fill_path(&path, &paint, FillRule::EvenOdd, Transform::identity(), None);
-        if fills.seam_mm > 0.0 {
-            pixmap.stroke_path(&path, &paint, &seam, Transform::identity(), None);
+        if let Some(path) = builder.finish() {
+            let mut paint = Paint { anti_alias: true, ..Paint::default() };
+            let [r, g, b] = area.color;
+            paint.set_color_rgba8(r, g, b, 255);
+            pixmap.fill_path(&path, &paint, FillRule::EvenOdd, Transform::identity(), None);
+            if fills.seam_mm > 0.0 {
+                pixmap.stroke_path(&path, &paint, &seam, Transform::identity(), None);
+            }
         }
+        draw(area.outlines(), width_mm, pen_color, px_per_mm, pixmap);
     }
 }
 

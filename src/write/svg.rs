@@ -14,7 +14,7 @@ use svg::Document;
 use svg::node::element::{Element, Group, Title};
 use svg::node::{Blob, Node, Text};
 
-use crate::plot::{Fills, Layer, Plot};
+use crate::plot::{Area, Fills, Layer, Plot};
 
 /// How a stroke is written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -93,7 +93,7 @@ fn group(layer: &Layer, element: StrokeElement) -> Group {
         .set("stroke-width", millimeters(layer.pen.width_mm))
         .set("stroke-linecap", "round")
         .set("stroke-linejoin", "round");
-    let fills = fills(&layer.fills);
+    let fills = fills(&layer.fills, element);
     if !fills.is_empty() {
         group.append(Blob::new(fills));
     }
@@ -105,45 +105,55 @@ fn group(layer: &Layer, element: StrokeElement) -> Group {
 }
 
 /// All areas of a layer, one a line: a path with a ring after the other, filled by the even-odd rule.
-fn fills(fills: &Fills) -> String {
+/// The outlines of an area follow it.
+fn fills(fills: &Fills, element: StrokeElement) -> String {
+    let seam = millimeters(fills.seam_mm);
     let mut text = String::with_capacity(16 * fills.n_points() + 80 * fills.len());
     for area in fills.iter() {
-        let [r, g, b] = area.color;
-        let color = format!("#{r:02x}{g:02x}{b:02x}");
-        let mut path = Vec::new();
-        for ring in area.rings() {
-            let mut points: Vec<[i64; 2]> = ring.iter().map(|&p| micrometers(p)).collect();
-            points.dedup();
-            if points.len() > 1 && points.first() == points.last() {
-                points.pop();
-            }
-            if points.len() < 3 {
-                continue;
-            }
-            for (i, point) in points.iter().enumerate() {
-                path.push(if i == 0 { b'M' } else { b'L' });
-                push_point(&mut path, point, b' ');
-            }
-            path.push(b'Z');
-        }
-        if path.is_empty() {
-            continue;
-        }
-        let path = ascii(path);
-        if !text.is_empty() {
+        push_area(&mut text, &area, &seam);
+        let outlines = text_of(&area.outlines().collect::<Vec<_>>(), element);
+        if !text.is_empty() && !outlines.is_empty() {
             text.push('\n');
         }
-        let seam = millimeters(fills.seam_mm);
-        let outline = if seam == "0" {
-            "stroke=\"none\"".to_owned()
-        } else {
-            format!("stroke=\"{color}\" stroke-width=\"{seam}\"")
-        };
-        text.push_str(&format!(
-            "<path fill=\"{color}\" fill-rule=\"evenodd\" {outline} d=\"{path}\"/>"
-        ));
+        text.push_str(&outlines);
     }
     text
+}
+
+fn push_area(text: &mut String, area: &Area, seam: &str) {
+    let [r, g, b] = area.color;
+    let color = format!("#{r:02x}{g:02x}{b:02x}");
+    let mut path = Vec::new();
+    for ring in area.rings() {
+        let mut points: Vec<[i64; 2]> = ring.iter().map(|&p| micrometers(p)).collect();
+        points.dedup();
+        if points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        if points.len() < 3 {
+            continue;
+        }
+        for (i, point) in points.iter().enumerate() {
+            path.push(if i == 0 { b'M' } else { b'L' });
+            push_point(&mut path, point, b' ');
+        }
+        path.push(b'Z');
+    }
+    if path.is_empty() {
+        return;
+    }
+    let path = ascii(path);
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    let outline = if seam == "0" {
+        "stroke=\"none\"".to_owned()
+    } else {
+        format!("stroke=\"{color}\" stroke-width=\"{seam}\"")
+    };
+    text.push_str(&format!(
+        "<path fill=\"{color}\" fill-rule=\"evenodd\" {outline} d=\"{path}\"/>"
+    ));
 }
 
 /// Points of strokes that are written at once: enough that sharing the work costs nothing.

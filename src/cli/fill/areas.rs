@@ -40,6 +40,14 @@ pub(super) struct AreaArgs {
     /// it. 0 leaves areas as they are, for machines that cut.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value_t = DEFAULT_SEAM_MM)]
     pub(super) seam: f64,
+    /// Remove hidden lines by painting over them: faces in white from far to near, each with its edges
+    ///
+    /// For screen and print only. On a plotter white paint covers nothing: it would draw all hidden
+    /// lines too, so plot the lines of `draw`. Engines: depth-sort, bsp (the default here), octree.
+    #[arg(long, conflicts_with_all = [
+        "palette", "debug", "disjoint", "no_edges", "light", "depth_cue", "paint", "leaf", "subdivision",
+    ])]
+    pub(super) white: bool,
     /// Color areas by what the engine did instead
     #[arg(long, value_enum, conflicts_with = "palette")]
     debug: Option<DebugName>,
@@ -95,6 +103,7 @@ impl AreaArgs {
     pub(super) fn options(&self) -> FillOptions {
         FillOptions {
             engine: match self.engine {
+                EngineName::Auto if self.white => FaceEngine::Bsp,
                 EngineName::Auto => FaceEngine::Auto,
                 EngineName::DepthSort => FaceEngine::DepthSort,
                 EngineName::Bsp => FaceEngine::Bsp,

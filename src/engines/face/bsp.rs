@@ -39,30 +39,33 @@
 //! | turbine blade | 199 034 | 426 995 | 416 896 | 5.3 s | 342 ms |
 
 mod build;
+mod objects;
 mod walk;
 
-pub(super) use self::build::check_piercings;
 pub use self::build::{
     AXES_FROM, MAX_FRAGMENTS, MAX_PIERCINGS, N_CANDIDATES, N_SAMPLES, SPLIT_WEIGHT,
     TooManyFragments,
 };
+pub(super) use self::build::{Link, check_piercings};
 pub use self::walk::{BspWalk, WalkOrder};
 
 use std::borrow::Cow;
 
-use super::fragment::{Easel, Fragment};
+use super::fragment::{Easel, Fragment, bounds};
+use super::mask::{FragmentsOf, Mask, MaskCounts};
 use super::painting::Painting;
 use super::{FaceWork, FragmentCounts};
 use crate::camera::Camera;
 use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes, Sign};
+use glam::DVec3;
 
 /// No node.
 const NONE: u32 = u32::MAX;
 
 /// A plane that parts what is left of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Node {
+struct PlaneNode {
     plane: PlaneName,
     /// The fragments in the plane.
     first: u32,
@@ -74,7 +77,7 @@ struct Node {
 /// Nodes and the fragments that they keep; holds one tree or several.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Forest {
-    nodes: Vec<Node>,
+    nodes: Vec<PlaneNode>,
     fragments: Vec<Fragment>,
 }
 
@@ -82,6 +85,22 @@ impl Forest {
     /// All fragments, in no order.
     pub(super) fn fragments(&self) -> &[Fragment] {
         &self.fragments
+    }
+
+    /// For each node a box around all fragments at and below it.
+    fn boxes(&self) -> Vec<(DVec3, DVec3)> {
+        let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); self.nodes.len()];
+        // Nodes have higher numbers than the ones above them.
+        for (number, node) in self.nodes.iter().enumerate().rev() {
+            let here = &self.fragments[node.first as usize..node.last as usize];
+            let below = [node.front, node.back].map(|below| boxes.get(below as usize).copied());
+            let (low, high) = below
+                .into_iter()
+                .flatten()
+                .fold(bounds(here), |around, other| (around.0.min(other.0), around.1.max(other.1)));
+            boxes[number] = (low, high);
+        }
+        boxes
     }
 
     /// Number of nodes of all trees.
@@ -95,6 +114,10 @@ impl Forest {
 pub struct BspTree {
     forest: Forest,
     root: u32,
+    /// For each node a box around all fragments at and below it.
+    boxes: Vec<(DVec3, DVec3)>,
+    of: FragmentsOf,
+    n_objects: u64,
     counts: FragmentCounts,
 }
 
@@ -108,12 +131,15 @@ impl BspTree {
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
         check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
-        let fragments = Fragment::all(scene, &planes);
         let mut counts = FragmentCounts::default();
         let mut forest = Forest::default();
-        let roots = forest.grow(scene, &planes, vec![fragments], &mut counts)?;
+        let objects = objects::all(scene, &planes);
+        let (root, sets) = forest.part_objects(scene, &planes, objects, &mut counts);
+        let n_objects = sets.len() as u64;
+        let root = forest.grow(scene, &planes, sets, &mut counts)?.first().copied().unwrap_or(root);
         counts.fragments = forest.fragments.len() as u64;
-        Ok(Self { forest, root: roots[0], counts })
+        let (boxes, of) = (forest.boxes(), FragmentsOf::new(scene, &forest.fragments));
+        Ok(Self { forest, root, boxes, of, n_objects, counts })
     }
 
     /// Number of nodes.
@@ -131,9 +157,15 @@ impl BspTree {
         self.counts
     }
 
-    /// The same with the size of the tree.
-    pub fn work(&self) -> FaceWork {
-        FaceWork::Bsp { counts: self.counts, nodes: self.n_nodes() as u64 }
+    /// The same with the size of the tree and what a view left out.
+    pub fn work(&self, hidden: MaskCounts) -> FaceWork {
+        FaceWork::Bsp {
+            counts: self.counts,
+            nodes: self.n_nodes() as u64,
+            objects: self.n_objects,
+            hidden_nodes: hidden.hidden_boxes,
+            hidden,
+        }
     }
 
     /// The fragments in the order in which the camera of `planes` sees them, with the side of their
@@ -153,7 +185,26 @@ impl BspTree {
         painting
     }
 
-    /// The same fragments, without painting them.
+    /// The fragments from far to near, cut at the near plane, without most of those that nearer ones
+    /// hide. `scene` must be that of the tree.
+    ///
+    /// What is left out is surely hidden; what is left may be.
+    pub fn paint_seen(&self, scene: &Scene, camera: &Camera) -> (Painting, MaskCounts) {
+        let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
+        let mut mask = Mask::new(scene, camera, &planes, &self.of, self.fragments().len());
+        let mut walk = self.walk(&planes, WalkOrder::NearToFar);
+        loop {
+            let is_wanted = |node: u32| {
+                let (low, high) = self.boxes[node as usize];
+                !mask.hides(low, high)
+            };
+            let Some((fragment, facing)) = walk.next_wanted(is_wanted) else { break };
+            mask.add(fragment, facing);
+        }
+        mask.painting()
+    }
+
+    /// The same fragments as [`paint`](Self::paint), without painting them.
     pub fn order(&self, scene: &Scene, camera: &Camera) -> Vec<Fragment> {
         let mut fragments = Vec::with_capacity(self.fragments().len());
         self.for_each(scene, camera, |fragment, _| fragments.push(fragment.into_owned()));

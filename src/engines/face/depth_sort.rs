@@ -89,27 +89,16 @@ const N_SAMPLES: usize = 1024;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum DepthSortError {
     /// Told before starting.
-    #[error(
-        "about {0} pairs of faces overlap in the image and in depth, which would take minutes; \
-         take --engine bsp or octree"
-    )]
+    #[error("about {0} pairs of faces overlap in the image and in depth, which would take minutes")]
     TooManyPairs(u64),
     /// Told before starting.
-    #[error(
-        "about {0} pairs of triangles pierce each other, too many to sort; \
-             take --engine warnock"
-    )]
+    #[error("about {0} pairs of triangles pierce each other, too many to sort")]
     TooManyPiercings(u64),
     /// Told while sorting.
-    #[error(
-        "the faces had to be split {0} times and are still not in order; \
-         take --engine bsp or warnock"
-    )]
+    #[error("the faces had to be split {0} times and are still not in order")]
     TooManySplits(u64),
     /// Told while sorting.
-    #[error(
-        "the faces were compared {0} times and are still not in order; take --engine bsp or warnock"
-    )]
+    #[error("the faces were compared {0} times and are still not in order")]
     TooManyTests(u64),
 }
 
@@ -130,7 +119,7 @@ pub struct DepthSortCounts {
 
 /// A fragment with what is asked of it most often. Boxes and depths are a little too large.
 #[derive(Debug, Clone)]
-struct Item {
+struct SortedFragment {
     fragment: Fragment,
     face: u32,
     /// The side of its plane that the eye is on.
@@ -143,7 +132,7 @@ struct Item {
     origin: u32,
 }
 
-impl Item {
+impl SortedFragment {
     fn new(easel: &Easel, fragment: Fragment, facing: Sign, origin: u32) -> Self {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for corner in fragment.corners() {
@@ -212,13 +201,13 @@ pub fn order(
     let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
     let easel = Easel::new(scene, camera);
     let near = planes.has_near_plane().then(|| planes.plane(PlaneName::Near));
-    let items: Vec<Item> = (0..scene.triangles().len() as u32)
+    let items: Vec<SortedFragment> = (0..scene.triangles().len() as u32)
         .into_par_iter()
         .filter_map(|triangle| {
             let whole = Fragment::new(scene, &planes, triangle)?;
             let facing = planes.side_of_eye(PlaneName::Triangle(triangle));
             let kept = whole.kept(&planes, near.as_ref()).filter(|_| facing != Sign::Zero)?;
-            Some(Item::new(&easel, kept.into_owned(), facing, 0))
+            Some(SortedFragment::new(&easel, kept.into_owned(), facing, 0))
         })
         .collect();
     let mut list = list::List::new(&planes, easel, items);

@@ -225,6 +225,13 @@ impl Fragment {
     }
 }
 
+/// A box around fragments, roundings included.
+pub(super) fn bounds(fragments: &[Fragment]) -> (DVec3, DVec3) {
+    let corners = || fragments.iter().flat_map(Fragment::corners);
+    let low = corners().fold(DVec3::INFINITY, |low, c| low.min(c.point - c.error));
+    (low, corners().fold(DVec3::NEG_INFINITY, |high, c| high.max(c.point + c.error)))
+}
+
 /// More than the roundings on the way to the image, as a part of the sizes that go in: one of the
 /// difference, three of each product, and those of the directions, some 8 units of 2⁻⁵³ together.
 const IMAGE_ERROR: f64 = 16.0 * f64::EPSILON;

@@ -23,6 +23,10 @@ pub mod piercing;
 
 pub mod occupancy;
 
+mod seams;
+
+pub mod mask;
+
 pub mod region;
 
 pub mod images;
@@ -81,10 +85,7 @@ impl FaceEngine {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FaceError {
     /// It would take too long.
-    #[error(
-        "{engine} takes at most {most} faces, and {n} are in view; \
-         take --engine {instead}, or a simpler model"
-    )]
+    #[error("{engine} takes at most {most} faces, and {n} are in view")]
     TooManyFaces {
         /// The engine.
         engine: &'static str,
@@ -92,13 +93,10 @@ pub enum FaceError {
         n: usize,
         /// How many it takes.
         most: usize,
-        /// The engine that takes more.
-        instead: &'static str,
     },
     /// It would take too long.
     #[error(
-        "{engine} takes at most {most} pairs of faces that overlap in the image, and there are more; \
-         take --engine warnock"
+        "{engine} takes at most {most} pairs of faces that overlap in the image, and there are more"
     )]
     TooManyPairs {
         /// The engine.
@@ -107,7 +105,7 @@ pub enum FaceError {
         most: u64,
     },
     /// The leaves are too small.
-    #[error("{n:.0} leaves are too many; give a larger --leaf, {most:.0} are the most")]
+    #[error("{n:.0} leaves are too many; {most:.0} are the most")]
     TooManyLeaves {
         /// How many there are.
         n: f64,
@@ -120,6 +118,25 @@ pub enum FaceError {
     /// Sorting would take too long, or finds no order.
     #[error(transparent)]
     NoOrder(#[from] depth_sort::DepthSortError),
+}
+
+impl FaceError {
+    /// Engines that take such a scene, the best first; none where a setting is to be changed instead.
+    pub fn instead(&self) -> &'static [FaceEngine] {
+        use depth_sort::DepthSortError;
+        match self {
+            Self::TooManyLeaves { .. } => &[],
+            Self::TooManyFaces { .. } | Self::NoOrder(DepthSortError::TooManyPairs(_)) => {
+                &[FaceEngine::Bsp, FaceEngine::Octree]
+            }
+            Self::NoOrder(DepthSortError::TooManySplits(_) | DepthSortError::TooManyTests(_)) => {
+                &[FaceEngine::Bsp, FaceEngine::Warnock]
+            }
+            Self::TooManyPairs { .. }
+            | Self::TooManyFragments(_)
+            | Self::NoOrder(DepthSortError::TooManyPiercings(_)) => &[FaceEngine::Warnock],
+        }
+    }
 }
 
 /// What engines can be told.
@@ -200,7 +217,10 @@ impl<'a> Prepared<'a> {
     ) -> Result<(Painting, FaceWork), FaceError> {
         let scene = self.scene;
         match (self.engine, &self.trees) {
-            (_, Trees::Planes(tree)) => Ok((tree.paint(scene, camera), tree.work())),
+            (_, Trees::Planes(tree)) => {
+                let (painting, hidden) = tree.paint_seen(scene, camera);
+                Ok((painting, tree.work(hidden)))
+            }
             (_, Trees::Octants(tree)) => {
                 let (painting, hidden) = tree.paint_seen(scene, camera);
                 Ok((painting, tree.work(hidden)))

@@ -11,11 +11,8 @@
 //!   eye
 //! ```
 //!
-//! From near to far the walk can leave out what is hidden: a quadtree of the image (`occupancy`)
-//! knows which squares are surely covered, and octants that fall on those are skipped with all that
-//! they hold. A fragment covers as soon as it is painted, a whole face as soon as its last fragment
-//! is, so large faces hide whole parts of a model; faces smaller than the smallest squares cover
-//! those together where they meet (`seams`), so a fine mesh hides its own back.
+//! From near to far the walk leaves out what is hidden ([`mask`](super::mask)): octants whose image is
+//! covered are skipped with all that they hold.
 //!
 //! Source: lecture notes on visibility (Slovak), section 3.3, and those on octree methods after Hearn
 //! and Baker; the order of the leaves is that of [`bsp`](super::bsp).
@@ -51,13 +48,9 @@
 //! Coherence: object coherence (an octant on a covered square is skipped with all it holds) and picture
 //! sequence coherence (one tree serves all views).
 
-mod hidden;
-mod seams;
-
-pub use self::hidden::Hidden;
-
-use super::bsp::{Forest, TooManyFragments, WalkOrder, check_piercings};
-use super::fragment::{Easel, Fragment};
+use super::bsp::{Forest, Link, TooManyFragments, WalkOrder, check_piercings};
+use super::fragment::{Easel, Fragment, bounds};
+use super::mask::{FragmentsOf, Mask, MaskCounts};
 use super::painting::Painting;
 use super::{FaceWork, FragmentCounts};
 use crate::camera::Camera;
@@ -102,10 +95,7 @@ struct Octant {
 pub struct Octree {
     octants: Vec<Octant>,
     forest: Forest,
-    /// How many fragments each face is cut into.
-    of_face: Vec<u32>,
-    /// The same for each triangle.
-    of_triangle: Vec<u32>,
+    of: FragmentsOf,
     counts: FragmentCounts,
 }
 
@@ -170,20 +160,16 @@ impl Octree {
             }
         }
         let mut forest = Forest::default();
+        let leaves = leaves.into_iter().enumerate().map(|(k, set)| (Link::Root(k), set)).collect();
         let roots = forest.grow(scene, &planes, leaves, &mut counts)?;
         for octant in &mut octants {
             if let Contents::Leaf(leaf) = &mut octant.contents {
                 *leaf = roots[*leaf as usize];
             }
         }
-        let mut of_face = vec![0; scene.mesh().n_faces()];
-        let mut of_triangle = vec![0; scene.triangles().len()];
-        for fragment in forest.fragments() {
-            of_triangle[fragment.triangle() as usize] += 1;
-            of_face[scene.triangle_faces()[fragment.triangle() as usize] as usize] += 1;
-        }
+        let of = FragmentsOf::new(scene, forest.fragments());
         counts.fragments = forest.fragments().len() as u64;
-        Ok(Self { octants, forest, of_face, of_triangle, counts })
+        Ok(Self { octants, forest, of, counts })
     }
 
     /// All fragments, in no order.
@@ -197,9 +183,10 @@ impl Octree {
     }
 
     /// The same with the size of the tree and what a view left out.
-    pub fn work(&self, hidden: Hidden) -> FaceWork {
+    pub fn work(&self, hidden: MaskCounts) -> FaceWork {
         let (octants, nodes) = (self.octants.len() as u64, self.forest.n_nodes() as u64);
-        FaceWork::Octree { counts: self.counts, octants, nodes, hidden }
+        let hidden_octants = hidden.hidden_boxes;
+        FaceWork::Octree { counts: self.counts, octants, nodes, hidden_octants, hidden }
     }
 
     /// Number of octants, leaves included.
@@ -225,6 +212,22 @@ impl Octree {
             }
         }
         painting
+    }
+
+    /// The fragments from far to near, cut at the near plane, without most of those that nearer ones
+    /// hide. `scene` must be that of the tree.
+    ///
+    /// What is left out is surely hidden; what is left may be.
+    pub fn paint_seen(&self, scene: &Scene, camera: &Camera) -> (Painting, MaskCounts) {
+        let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(camera);
+        let mut mask = Mask::new(scene, camera, &planes, &self.of, self.fragments().len());
+        let mut leaves = Leaves::new(self, &planes, WalkOrder::NearToFar);
+        while let Some(root) = leaves.next(|octant| !mask.hides(octant.low, octant.high)) {
+            for (fragment, facing) in self.forest.walk(&planes, root, WalkOrder::NearToFar) {
+                mask.add(fragment, facing);
+            }
+        }
+        mask.painting()
     }
 }
 
@@ -315,13 +318,6 @@ fn part(planes: &Planes, task: Task, counts: &mut FragmentCounts) -> Parted {
         (!fragments.is_empty()).then_some(Task { link: None, depth, low, high, fragments })
     });
     Parted::Octants(center, Box::new(below))
-}
-
-/// A box around fragments, roundings included.
-fn bounds(fragments: &[Fragment]) -> (DVec3, DVec3) {
-    let corners = || fragments.iter().flat_map(Fragment::corners);
-    let low = corners().fold(DVec3::INFINITY, |low, c| low.min(c.point - c.error));
-    (low, corners().fold(DVec3::NEG_INFINITY, |high, c| high.max(c.point + c.error)))
 }
 
 /// Builds a tree and paints one view, leaving out what it finds hidden: see [`Octree::paint_seen`].

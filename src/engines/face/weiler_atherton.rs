@@ -53,7 +53,7 @@ use super::boxes::BoxIndex;
 use super::images::{DepthOrder, Images};
 use super::painting::Painting;
 use super::region::Region;
-use super::{FaceError, merge};
+use super::{FaceEngine, FaceError, merge};
 use crate::camera::Camera;
 use crate::model::scene::Scene;
 
@@ -99,16 +99,13 @@ pub fn solve(
     let images = Images::new(scene, camera);
     let n = images.flats.len();
     if n > MOST_FACES {
-        return Err(FaceError::TooManyFaces {
-            engine: "weiler-atherton",
-            n,
-            most: MOST_FACES,
-            instead: "bsp",
-        });
+        let engine = FaceEngine::WeilerAtherton.name();
+        return Err(FaceError::TooManyFaces { engine, n, most: MOST_FACES });
     }
     let index = BoxIndex::new(images.flats.iter().map(|flat| flat.region.bounds()).collect());
     if index.has_more_pairs(MOST_PAIRS) {
-        return Err(FaceError::TooManyPairs { engine: "weiler-atherton", most: MOST_PAIRS });
+        let engine = FaceEngine::WeilerAtherton.name();
+        return Err(FaceError::TooManyPairs { engine, most: MOST_PAIRS });
     }
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_by(|&a, &b| {

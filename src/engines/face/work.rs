@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{FaceEngine, depth_sort, octree, warnock, weiler_atherton};
+use super::mask::MaskCounts;
+use super::{FaceEngine, depth_sort, warnock, weiler_atherton};
 
 /// How often fragments were cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -37,8 +38,15 @@ pub enum FaceWork {
         counts: FragmentCounts,
         /// Nodes of the tree.
         nodes: u64,
+        /// Objects that planes keep apart from all others; see [`bsp`](super::bsp).
+        objects: u64,
+        /// Nodes that were found hidden in the view, not counting those below them.
+        hidden_nodes: u64,
+        /// What the view left out.
+        #[serde(flatten)]
+        hidden: MaskCounts,
     },
-    /// Of [`octree`].
+    /// Of [`octree`](super::octree).
     Octree {
         /// Of building.
         #[serde(flatten)]
@@ -47,9 +55,11 @@ pub enum FaceWork {
         octants: u64,
         /// Nodes of the leaves' trees of planes.
         nodes: u64,
+        /// Octants that were found hidden in the view, not counting those in them.
+        hidden_octants: u64,
         /// What the view left out.
         #[serde(flatten)]
-        hidden: octree::Hidden,
+        hidden: MaskCounts,
     },
     /// Of [`warnock`].
     Warnock(warnock::WarnockCounts),

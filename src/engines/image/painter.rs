@@ -24,10 +24,7 @@ use crate::model::scene::Scene;
 
 /// The faces of a scene pierce each other too often to be put in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error(
-    "the faces pierce each other so often that the painter finds no order in reasonable time; \
-     take --engine z-buffer"
-)]
+#[error("the faces pierce each other so often that the painter finds no order in reasonable time")]
 pub struct NoOrder;
 
 /// The picture whose items are in the order of painting. O(triangles log triangles) usually; see

@@ -128,7 +128,7 @@ pub struct Raster {
     height: u32,
     /// Corners: x and y in pixels, z is nearness.
     corners: Vec<DVec3>,
-    items: Vec<Item>,
+    items: Vec<ListedTriangle>,
     /// Where each strip begins in `listed`, and where the last one ends.
     strip_starts: Vec<usize>,
     listed: Vec<u32>,
@@ -138,7 +138,7 @@ pub struct Raster {
 
 /// A triangle, by its corners. Small, since there may be millions of which most are used once.
 #[derive(Debug, Clone, Copy)]
-struct Item {
+struct ListedTriangle {
     corners: [u32; 3],
     /// Its number in the scene.
     triangle: u32,
@@ -146,7 +146,7 @@ struct Item {
     last_strip: u16,
 }
 
-impl Item {
+impl ListedTriangle {
     /// `None` when no pixel center can be in the triangle.
     #[inline]
     fn new(
@@ -191,10 +191,11 @@ impl Raster {
             }
         }
         let item = |triangle: u32, indices: [u32; 3]| {
-            let item = Item::new(triangle, indices, indices.map(|k| corners[k as usize]), size);
+            let item =
+                ListedTriangle::new(triangle, indices, indices.map(|k| corners[k as usize]), size);
             item.filter(|_| !view.is_edge_on(triangle))
         };
-        let mut items: Vec<Item> = all
+        let mut items: Vec<ListedTriangle> = all
             .into_par_iter()
             .filter(|&triangle| !is_cut(triangle))
             .filter_map(|triangle| item(triangle, scene.triangles()[triangle as usize]))
@@ -210,7 +211,7 @@ impl Raster {
     /// each with its number.
     pub fn of_triangles(triangles: &[([DVec3; 3], u32)], size: (u32, u32)) -> Self {
         let items = (0..).zip(triangles).filter_map(|(k, &(corners, number))| {
-            Item::new(number, [3 * k, 3 * k + 1, 3 * k + 2], corners, size)
+            ListedTriangle::new(number, [3 * k, 3 * k + 1, 3 * k + 2], corners, size)
         });
         let items = items.collect();
         Self::listing(triangles.iter().flat_map(|(corners, _)| *corners).collect(), items, size)
@@ -223,9 +224,14 @@ impl Raster {
     }
 
     /// Lists the items strip by strip.
-    fn listing(corners: Vec<DVec3>, items: Vec<Item>, (width, height): (u32, u32)) -> Self {
+    fn listing(
+        corners: Vec<DVec3>,
+        items: Vec<ListedTriangle>,
+        (width, height): (u32, u32),
+    ) -> Self {
         let n_strips = height.div_ceil(STRIP_ROWS) as usize;
-        let strips = |item: &Item| usize::from(item.first_strip)..=usize::from(item.last_strip);
+        let strips =
+            |item: &ListedTriangle| usize::from(item.first_strip)..=usize::from(item.last_strip);
         let mut strip_starts = vec![0; n_strips + 1];
         for strip in items.iter().flat_map(strips) {
             strip_starts[strip + 1] += 1;

@@ -40,7 +40,7 @@ pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
 
 /// A box around triangles.
 #[derive(Clone, Copy)]
-struct Node {
+struct RayNode {
     low: DVec2,
     high: DVec2,
     nearest: Depth,
@@ -54,7 +54,7 @@ struct Node {
 struct RayTree {
     /// With their numbers in the raster.
     triangles: Vec<(u32, RasterTriangle)>,
-    nodes: Vec<Node>,
+    nodes: Vec<RayNode>,
 }
 
 impl RayTree {
@@ -81,7 +81,7 @@ impl RayTree {
         }
         let own = self.nodes.len();
         let (start, end) = (from as u32, to as u32);
-        self.nodes.push(Node { low, high, nearest, from: start, to: end, second: 0 });
+        self.nodes.push(RayNode { low, high, nearest, from: start, to: end, second: 0 });
         if to - from > LEAF {
             let size = high - low;
             let middle = |(_, triangle): &(u32, RasterTriangle)| {

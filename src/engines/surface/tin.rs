@@ -201,6 +201,8 @@ impl<'a> Tin<'a> {
             }
             (Some(Ordering::Less), None) => Some([(false, true); 2]),
             (Some(Ordering::Less), Some(Ordering::Less)) => Some([(false, false), (false, true)]),
+            // Between two sheets; or on the surface, where the near plane cuts the triangle around the
+            // eye or a neighbor, so that nothing is left to draw by the time this is asked.
             _ => None,
         }
     }

@@ -227,3 +227,78 @@ fn surfaces_are_filled_as_models_are() {
     assert_eq!(fill(&[SPOT, "--expr", "x"]).status.code(), Some(2));
     assert_eq!(fill(&[]).status.code(), Some(2));
 }
+
+#[test]
+fn white_faces_hide_the_lines_behind_them() {
+    let folder = tempfile::tempdir().unwrap();
+    // Two squares, one above the other; from above only the upper one is seen.
+    std::fs::write(
+        folder.path().join("squares.off"),
+        "OFF\n8 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 -1 1\n2 -1 1\n2 2 1\n-1 2 1\n4 0 1 2 3\n4 4 5 6 7\n",
+    )
+    .unwrap();
+    let run = |arguments: &[&str]| {
+        let all = [&["fill", "squares.off", "--view", "top", "--white"], arguments].concat();
+        hiddenline(folder.path(), &all)
+    };
+    let output = run(&["--engine", "depth-sort", "--pen-width", "0.5"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let svg = text(&output.stdout);
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let layer = document.descendants().find(|n| n.attribute("id") == Some("pen1-white")).unwrap();
+    assert_eq!(layer.attribute("stroke"), Some("#000000"));
+    assert_eq!(layer.attribute("stroke-width"), Some("0.5"));
+    let fills: Vec<_> =
+        layer.children().filter(|n| n.is_element()).map(|n| n.attribute("fill")).collect();
+    // Each square is a white area with its outline on it, in two triangles.
+    let (white, line) = (Some("#ffffff"), None);
+    assert_eq!(fills, [white, line, white, line, white, line, white, line]);
+    assert!(!svg.contains("visible"));
+    // The default leaves out what is surely hidden.
+    assert_eq!(text(&run(&[]).stdout).matches("fill=\"#ffffff\"").count(), 2);
+    // In print what is left is what `draw` draws.
+    let picture = |arguments: &[&str], name: &str| {
+        let output = hiddenline(folder.path(), &[arguments, &["-o", name]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let file = std::fs::File::open(folder.path().join(name)).unwrap();
+        let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        pixels
+    };
+    let drawn = picture(&["draw", "squares.off", "--view", "top"], "drawn.png");
+    let painted = picture(
+        &["fill", "squares.off", "--view", "top", "--white", "--engine", "depth-sort"],
+        "painted.png",
+    );
+    assert_eq!(drawn.len(), painted.len());
+    let n_differ = drawn.iter().zip(&painted).filter(|(a, b)| a.abs_diff(**b) > 100).count();
+    let n_dark = drawn.iter().filter(|&&pixel| pixel < 128).count();
+    assert!(n_dark > 5000 && n_differ * 100 < n_dark, "{n_differ} of {n_dark}");
+    // PDF: each line is drawn with the pen, as wide as that is, right after the area that it borders.
+    let pdf = run(&["--engine", "depth-sort", "--format", "pdf", "--pen-width", "0.5"]).stdout;
+    let pdf = lopdf::Document::load_mem(&pdf).unwrap();
+    let page = pdf.page_iter().next().unwrap();
+    let content = lopdf::content::Content::decode(&pdf.get_page_content(page)).unwrap();
+    let (mut width, mut painted) = (0.0, Vec::new());
+    for operation in &content.operations {
+        match operation.operator.as_str() {
+            "w" => width = operation.operands[0].as_float().unwrap(),
+            "S" | "s" => painted.push(width),
+            "B*" => painted.push(-width),
+            _ => {}
+        }
+    }
+    assert_eq!(painted, [[-0.05, 0.5]; 4].concat());
+    for (arguments, message) in [
+        (vec!["--palette", "3"], "cannot be used"),
+        (vec!["--no-edges"], "cannot be used"),
+        (vec!["--lines", "outline"], "whole edges"),
+        (vec!["--engine", "warnock"], "--engine bsp"),
+    ] {
+        let output = run(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let error = text(&output.stderr);
+        assert!(error.contains(message), "{arguments:?}: {error}");
+    }
+}

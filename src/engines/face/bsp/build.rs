@@ -3,7 +3,7 @@
 //! Large sets are parted in parallel, one plane a round; small ones are worked off at once by one
 //! thread. Nothing depends on the number of threads, and nothing recurs.
 
-use super::{Forest, NONE, Node};
+use super::{Forest, NONE, PlaneNode};
 use crate::engines::face::fragment::{Fragment, Position};
 use crate::engines::face::{FragmentCounts, piercing};
 use crate::model::scene::Scene;
@@ -38,8 +38,7 @@ const ALONE: usize = 512;
 /// Faces cross too often for a tree of planes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "the faces of the model pierce each other too often and would be cut into millions of fragments; \
-     take --engine warnock"
+    "the faces of the model pierce each other too often and would be cut into millions of fragments"
 )]
 pub struct TooManyFragments;
 
@@ -56,8 +55,10 @@ pub(in crate::stages::engines::face) fn check_piercings(
 
 /// Where the number of a node goes.
 #[derive(Debug, Clone, Copy)]
-enum Link {
+pub(in crate::stages::engines::face) enum Link {
+    /// The root of a tree, by its place among the roots.
     Root(usize),
+    /// Below a node.
     Front(u32),
     Back(u32),
 }
@@ -80,17 +81,17 @@ enum Grown {
 }
 
 impl Forest {
-    /// Grows a tree from each set of fragments; their roots.
+    /// Grows a tree from each set of fragments; the roots of those that are below no node.
     pub(in crate::stages::engines::face) fn grow(
         &mut self,
         scene: &Scene,
         planes: &Planes,
-        sets: Vec<Vec<Fragment>>,
+        sets: Vec<(Link, Vec<Fragment>)>,
         counts: &mut FragmentCounts,
     ) -> Result<Vec<u32>, TooManyFragments> {
-        let mut roots = vec![NONE; sets.len()];
-        let mut waiting: Vec<(Link, Vec<Fragment>)> =
-            sets.into_iter().enumerate().map(|(i, set)| (Link::Root(i), set)).collect();
+        let n_roots = sets.iter().filter(|(link, _)| matches!(link, Link::Root(_))).count();
+        let mut roots = vec![NONE; n_roots];
+        let mut waiting = sets;
         while !waiting.is_empty() {
             let grown: Vec<(Link, Grown, FragmentCounts)> = waiting
                 .into_par_iter()
@@ -120,8 +121,7 @@ impl Forest {
                 }
                 match link {
                     Link::Root(root) => roots[root] = number,
-                    Link::Front(parent) => self.nodes[parent as usize].front = number,
-                    Link::Back(parent) => self.nodes[parent as usize].back = number,
+                    link => self.link(link, number),
                 }
             }
             let n_waiting: usize = waiting.iter().map(|(_, set)| set.len()).sum();
@@ -132,17 +132,27 @@ impl Forest {
         Ok(roots)
     }
 
-    fn push(&mut self, plane: PlaneName, within: Vec<Fragment>) {
+    /// Makes a node known to the one above it.
+    pub(super) fn link(&mut self, link: Link, number: u32) {
+        match link {
+            Link::Root(_) => {}
+            Link::Front(parent) => self.nodes[parent as usize].front = number,
+            Link::Back(parent) => self.nodes[parent as usize].back = number,
+        }
+    }
+
+    /// Adds a node without any below it.
+    pub(super) fn push(&mut self, plane: PlaneName, within: Vec<Fragment>) {
         let first = self.fragments.len() as u32;
         self.fragments.extend(within);
         let last = self.fragments.len() as u32;
-        self.nodes.push(Node { plane, first, last, front: NONE, back: NONE });
+        self.nodes.push(PlaneNode { plane, first, last, front: NONE, back: NONE });
     }
 
     fn append(&mut self, other: Self) {
         let (nodes, fragments) = (self.nodes.len() as u32, self.fragments.len() as u32);
         let moved = |node: u32| if node == NONE { NONE } else { node + nodes };
-        self.nodes.extend(other.nodes.into_iter().map(|node| Node {
+        self.nodes.extend(other.nodes.into_iter().map(|node| PlaneNode {
             first: node.first + fragments,
             last: node.last + fragments,
             front: moved(node.front),
@@ -167,11 +177,7 @@ fn alone(
             continue;
         }
         let number = forest.nodes.len() as u32;
-        match link {
-            Link::Root(_) => {}
-            Link::Front(parent) => forest.nodes[parent as usize].front = number,
-            Link::Back(parent) => forest.nodes[parent as usize].back = number,
-        }
+        forest.link(link, number);
         let Parted { plane, within, front, back } = part(scene, planes, set, counts);
         forest.push(plane, within);
         waiting.push((Link::Front(number), front));
@@ -214,13 +220,17 @@ fn part(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut Fragmen
                 }
             }
         }
-        // The nearest is painted last: of faces in one plane that of the lowest number.
-        let face = |f: &Fragment| scene.triangle_faces()[f.triangle() as usize];
-        within.sort_by_key(|f| std::cmp::Reverse((face(f), f.triangle())));
+        in_painting_order(scene, &mut within);
         return Parted { plane: name, within, front, back };
     }
     // Not reached: there is always a face among the candidates.
     Parted { plane: PlaneName::Near, within: set, front: Vec::new(), back: Vec::new() }
+}
+
+/// Sorts what lies in one plane: the nearest, that of the lowest face, is painted last.
+pub(super) fn in_painting_order(scene: &Scene, within: &mut [Fragment]) {
+    let face = |f: &Fragment| scene.triangle_faces()[f.triangle() as usize];
+    within.sort_by_key(|f| std::cmp::Reverse((face(f), f.triangle())));
 }
 
 /// The candidates, the best first.

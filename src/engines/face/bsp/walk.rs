@@ -26,7 +26,7 @@ pub struct BspWalk<'a> {
 
 #[derive(Debug, Clone, Copy)]
 enum Visit {
-    BspTree(u32),
+    Node(u32),
     Plane(u32),
 }
 
@@ -38,7 +38,7 @@ impl Forest {
         root: u32,
         order: WalkOrder,
     ) -> BspWalk<'a> {
-        let waiting = vec![Visit::BspTree(root)];
+        let waiting = vec![Visit::Node(root)];
         BspWalk { forest: self, planes, order, waiting, here: &[] }
     }
 }
@@ -47,6 +47,16 @@ impl<'a> Iterator for BspWalk<'a> {
     type Item = (&'a Fragment, Sign);
 
     fn next(&mut self) -> Option<Self::Item> {
+        self.next_wanted(|_| true)
+    }
+}
+
+impl<'a> BspWalk<'a> {
+    /// The next fragment, leaving out nodes that are not wanted with all below them.
+    pub(super) fn next_wanted(
+        &mut self,
+        mut is_wanted: impl FnMut(u32) -> bool,
+    ) -> Option<(&'a Fragment, Sign)> {
         loop {
             let next = match self.order {
                 WalkOrder::FarToNear => self.here.split_first(),
@@ -59,8 +69,9 @@ impl<'a> Iterator for BspWalk<'a> {
                 return Some((fragment, self.planes.side_of_eye(own)));
             }
             match self.waiting.pop()? {
-                Visit::BspTree(NONE) => {}
-                Visit::BspTree(number) => {
+                Visit::Node(NONE) => {}
+                Visit::Node(number) if !is_wanted(number) => {}
+                Visit::Node(number) => {
                     let node = &self.forest.nodes[number as usize];
                     let facing = self.planes.side_of_eye(node.plane);
                     // With the eye in the plane neither side hides anything of the other.
@@ -74,7 +85,7 @@ impl<'a> Iterator for BspWalk<'a> {
                         WalkOrder::NearToFar => (near, far),
                     };
                     let plane = Visit::Plane(number);
-                    self.waiting.extend([Visit::BspTree(last), plane, Visit::BspTree(first)]);
+                    self.waiting.extend([Visit::Node(last), plane, Visit::Node(first)]);
                 }
                 Visit::Plane(number) => {
                     let node = &self.forest.nodes[number as usize];

@@ -1,13 +1,13 @@
 //! A tree of boxes over image and depth, which offers the pairs that tests are needed for.
 
-use super::Item;
+use super::SortedFragment;
 use glam::DVec2;
 
 /// Items in a leaf.
 const LEAF: usize = 4;
 
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct BoxNode {
     low: DVec2,
     high: DVec2,
     far: f64,
@@ -22,16 +22,16 @@ struct Node {
 
 /// The tree; items are removed as they are painted.
 #[derive(Debug, Default)]
-pub(super) struct Boxes {
-    nodes: Vec<Node>,
+pub(super) struct BoxTree {
+    nodes: Vec<BoxNode>,
     numbers: Vec<u32>,
     leaf_of: Vec<u32>,
     is_left: Vec<bool>,
 }
 
-impl Boxes {
+impl BoxTree {
     /// O(n log n).
-    pub(super) fn new(items: &[Item]) -> Self {
+    pub(super) fn new(items: &[SortedFragment]) -> Self {
         let n = items.len();
         let mut boxes = Self {
             nodes: Vec::new(),
@@ -74,8 +74,8 @@ impl Boxes {
         boxes
     }
 
-    fn node(&self, items: &[Item], first: usize, last: usize, parent: u32) -> Node {
-        let mut node = Node {
+    fn node(&self, items: &[SortedFragment], first: usize, last: usize, parent: u32) -> BoxNode {
+        let mut node = BoxNode {
             low: DVec2::INFINITY,
             high: DVec2::NEG_INFINITY,
             far: f64::NEG_INFINITY,
@@ -112,7 +112,12 @@ impl Boxes {
 
     /// Calls `found` with the numbers of all items that are left, whose image box may meet that of
     /// `item` and whose depth ends beyond the beginning of that of `item`.
-    pub(super) fn for_each(&self, items: &[Item], item: &Item, mut found: impl FnMut(u32)) {
+    pub(super) fn for_each(
+        &self,
+        items: &[SortedFragment],
+        item: &SortedFragment,
+        mut found: impl FnMut(u32),
+    ) {
         let mut waiting = vec![0u32];
         while let Some(at) = waiting.pop() {
             let Some(node) = self.nodes.get(at as usize) else { continue };

@@ -3,9 +3,9 @@
 //! Those moved before each other form a stack: on top is the one that is looked at, below it the one
 //! that it has to precede, and so on down to the one with which the list began. All of them are marked.
 
-use super::boxes::Boxes;
+use super::boxes::BoxTree;
 use super::relation::{Test, is_across, test};
-use super::{DepthSortCounts, DepthSortError, Item, MAX_SPLITS, MAX_TESTS, Settled};
+use super::{DepthSortCounts, DepthSortError, MAX_SPLITS, MAX_TESTS, Settled, SortedFragment};
 use crate::engines::face::fragment::Easel;
 use crate::predicates::{PlaneName, Planes};
 use rustc_hash::FxHashMap;
@@ -51,9 +51,9 @@ impl Ord for Farthest {
 pub(super) struct List<'a> {
     planes: &'a Planes<'a>,
     easel: Easel<'a>,
-    items: Vec<Item>,
+    items: Vec<SortedFragment>,
     states: Vec<State>,
-    boxes: Boxes,
+    boxes: BoxTree,
     /// For each item at the start, how many of its parts are not painted.
     n_parts: Vec<u32>,
     /// What is to begin the list next.
@@ -64,7 +64,11 @@ pub(super) struct List<'a> {
 }
 
 impl<'a> List<'a> {
-    pub(super) fn new(planes: &'a Planes<'a>, easel: Easel<'a>, mut items: Vec<Item>) -> Self {
+    pub(super) fn new(
+        planes: &'a Planes<'a>,
+        easel: Easel<'a>,
+        mut items: Vec<SortedFragment>,
+    ) -> Self {
         for (number, item) in (0..).zip(&mut items) {
             item.origin = number;
         }
@@ -73,7 +77,7 @@ impl<'a> List<'a> {
             planes,
             easel,
             states: vec![State::Waiting; n],
-            boxes: Boxes::new(&items),
+            boxes: BoxTree::new(&items),
             n_parts: vec![1; n],
             heap: (0..).zip(&items).map(|(number, item)| Farthest(item.far, number)).collect(),
             stack: Vec::new(),
@@ -82,7 +86,7 @@ impl<'a> List<'a> {
         }
     }
 
-    pub(super) fn item(&self, number: u32) -> &Item {
+    pub(super) fn item(&self, number: u32) -> &SortedFragment {
         &self.items[number as usize]
     }
 
@@ -246,7 +250,7 @@ impl<'a> List<'a> {
         self.states[number as usize] = State::Split(first);
         self.n_parts[origin as usize] += 1;
         for (part, number) in [front, back].into_iter().zip(first..) {
-            let item = Item::new(&self.easel, part, facing, origin);
+            let item = SortedFragment::new(&self.easel, part, facing, origin);
             self.heap.push(Farthest(item.far, number));
             self.items.push(item);
             self.states.push(State::Waiting);

@@ -1,6 +1,6 @@
 //! The tests of a pair: whether one fragment hides a part of another.
 
-use super::Item;
+use super::SortedFragment;
 use crate::engines::face::fragment::{Fragment, Position};
 use crate::predicates::{Corner, Plane, PlaneName, Planes, Sign};
 use serde::Serialize;
@@ -71,12 +71,12 @@ enum Beside {
     Across,
 }
 
-fn plane_of(planes: &Planes, item: &Item) -> Plane {
+fn plane_of(planes: &Planes, item: &SortedFragment) -> Plane {
     planes.plane(PlaneName::Triangle(item.fragment.triangle()))
 }
 
 /// How `item` lies to the plane of `other`.
-fn beside(planes: &Planes, item: &Item, other: &Item) -> Beside {
+fn beside(planes: &Planes, item: &SortedFragment, other: &SortedFragment) -> Beside {
     let is_front = other.facing == Sign::Positive;
     match item.fragment.position(planes, &plane_of(planes, other)) {
         Position::Front if is_front => Beside::InFront,
@@ -88,7 +88,7 @@ fn beside(planes: &Planes, item: &Item, other: &Item) -> Beside {
 }
 
 /// The first test that says that `p` may be painted before `q`, since it hides no part of it.
-pub(super) fn test(planes: &Planes, p: &Item, q: &Item) -> Test {
+pub(super) fn test(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> Test {
     if p.near >= q.far {
         return Test::Depth;
     }
@@ -119,15 +119,15 @@ pub(super) fn test(planes: &Planes, p: &Item, q: &Item) -> Test {
 }
 
 /// Whether `fragment` of `item` lies across the plane of `other`.
-pub(super) fn is_across(planes: &Planes, item: &Item, other: &Item) -> bool {
+pub(super) fn is_across(planes: &Planes, item: &SortedFragment, other: &SortedFragment) -> bool {
     beside(planes, item, other) == Beside::Across
 }
 
 /// Whether the images have more than borders in common.
 ///
 /// Convex polygons have not when one of their sides has all of the other polygon beyond it.
-fn images_overlap(planes: &Planes, p: &Item, q: &Item) -> bool {
-    let parts = |a: &Item, b: &Item| {
+fn images_overlap(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> bool {
+    let parts = |a: &SortedFragment, b: &SortedFragment| {
         sides(&a.fragment).any(|(from, to)| {
             b.fragment.corners().all(|x| planes.turn(from, to, x).times(a.facing) != Sign::Positive)
         })
@@ -142,7 +142,7 @@ fn sides(fragment: &Fragment) -> impl Iterator<Item = (&Corner, &Corner)> {
 }
 
 /// Whether the image of a corner lies in that of an item or on its border.
-fn covers(planes: &Planes, item: &Item, corner: &Corner) -> bool {
+fn covers(planes: &Planes, item: &SortedFragment, corner: &Corner) -> bool {
     sides(&item.fragment)
         .all(|(from, to)| planes.turn(from, to, corner).times(item.facing) != Sign::Negative)
 }
@@ -151,7 +151,7 @@ fn covers(planes: &Planes, item: &Item, corner: &Corner) -> bool {
 ///
 /// The depth of one over the other is linear there, so that corners tell all. A corner of the common
 /// part is a corner of one in the other, or a crossing of two sides.
-fn is_behind_all_over(planes: &Planes, p: &Item, q: &Item) -> bool {
+fn is_behind_all_over(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> bool {
     let (of_p, of_q) = (plane_of(planes, p), plane_of(planes, q));
     let wrong = p.fragment.corners().any(|corner| {
         planes.side(&of_q, corner).1.times(q.facing) == Sign::Positive && covers(planes, q, corner)

@@ -13,8 +13,9 @@ use hiddenline::stages::model::scene::Scene;
 /// An engine without settings.
 type Solve = fn(&Scene, &Camera) -> Painting;
 
-const ENGINES: [(&str, Solve); 4] = [
-    ("bsp", |scene, camera| bsp::solve(scene, camera).unwrap().0),
+const ENGINES: [(&str, Solve); 5] = [
+    ("bsp, all", |scene, camera| bsp::solve(scene, camera).unwrap().0),
+    ("bsp", |scene, camera| bsp::BspTree::new(scene).unwrap().paint_seen(scene, camera).0),
     ("octree", |scene, camera| octree::solve(scene, camera).unwrap().0),
     ("octree, all", |scene, camera| octree::Octree::new(scene).unwrap().paint(scene, camera)),
     ("depth sort", |scene, camera| depth_sort::solve(scene, camera).unwrap().0),

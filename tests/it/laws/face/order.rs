@@ -67,6 +67,23 @@ fn faces_that_pierce_each_other_are_split() {
 }
 
 #[test]
+fn faces_that_cross_behind_the_eye_come_out_right() {
+    // The planes meet at y = −1/2, and the image of that line is far above all that is seen.
+    let slope = |y: f64| (y + 0.5) / 16.0;
+    for swapped in [false, true] {
+        let mut model = Model::default();
+        let corners = [(-1.0, -10.0), (1.0, -10.0), (0.0, 50.0)];
+        let level = corners.map(|(x, y)| [x, y, 0.0]);
+        let sloping = corners.map(|(x, y)| [x, y, slope(y)]);
+        let faces = if swapped { [sloping, level] } else { [level, sloping] };
+        faces.iter().for_each(|face| model.face(face));
+        let sight = perspective([0.0, 0.0, 5.0], [0.0, 1.0, 5.0], 1.0);
+        let scene = model.seen_by("crossing behind the eye", sight);
+        assert!(judge(&scene, 40) > 300);
+    }
+}
+
+#[test]
 fn a_triangle_through_a_square_comes_out_right() {
     // The triangle's plane is z = y − x + 6; the eye is at z = −∞.
     for (up, target) in [([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0])] {

@@ -101,10 +101,15 @@ fn a_tree_of_planes_grows_as_boxes_beside_each_other_do() {
             built(&model.seen_by("boxes", orthographic([1.0, 2.0, -3.0], [0.0, 0.0, 1.0])));
         let prepared = Prepared::new(&scene, FaceEngine::Bsp).unwrap();
         let (painting, work) = prepared.solve(&camera, &FaceOptions::default()).unwrap();
-        let FaceWork::Bsp { counts, nodes } = work else { panic!("{work:?}") };
-        assert_eq!(counts.fragments, u64::from(12 * n) + counts.splits);
-        // Of each box three sides face the eye; no fragment is left out.
-        assert!(painting.len() as u64 == counts.fragments, "{n}: {counts:?}");
+        let FaceWork::Bsp { counts, nodes, objects, hidden, .. } = work else { panic!("{work:?}") };
+        assert_eq!(
+            (counts.fragments, counts.splits, objects),
+            (u64::from(12 * n), 0, u64::from(n))
+        );
+        assert_eq!(painting.len() as u64, hidden.painted);
+        assert_eq!(hidden.painted + hidden.hidden_fragments, counts.fragments, "{hidden:?}");
+        let all = bsp::solve(&scene, &camera).unwrap().0;
+        assert_eq!(all.len() as u64, counts.fragments, "no side of a box is edge-on");
         nodes
     };
     // Each side is a plane, and no plane of one box has to cut another.
@@ -114,6 +119,96 @@ fn a_tree_of_planes_grows_as_boxes_beside_each_other_do() {
         eprintln!("{n} boxes: {found} nodes");
         assert!((6 * n as u64..8 * n as u64).contains(&found), "{n} boxes: {found} nodes");
     }
+}
+
+/// Objects that planes keep apart, and how often their faces are cut.
+fn objects(model: Model) -> (u64, u64) {
+    let (scene, camera) =
+        built(&model.seen_by("objects", orthographic([1.0, 2.0, -3.0], [0.0, 0.0, 1.0])));
+    let prepared = Prepared::new(&scene, FaceEngine::Bsp).unwrap();
+    let (_, work) = prepared.solve(&camera, &FaceOptions::default()).unwrap();
+    let FaceWork::Bsp { counts, objects, .. } = work else { panic!("{work:?}") };
+    assert_eq!(counts.fragments, scene.triangles().len() as u64 + counts.splits);
+    (objects, counts.splits)
+}
+
+#[test]
+fn objects_that_a_plane_keeps_apart_are_not_cut() {
+    let mut shelf = Model::default();
+    for k in 0..60 {
+        let [x, y, z] = [k % 4, k / 4 % 5, k / 20].map(|at| 3.0 * f64::from(at));
+        shelf.add_box([x, y, z], [x + 2.0, y + 1.0 + z / 9.0, z + 2.5]);
+    }
+    assert_eq!(objects(shelf), (60, 0));
+    // Long bars across: their boxes overlap, but each has another behind one of its sides.
+    let mut bars = Model::default();
+    for k in 0..8 {
+        let low = 1.5 * f64::from(k);
+        let across = |x: f64, y: f64, z: f64| [x - y + low, x + y + low, z];
+        for z in [0.0, 1.0] {
+            bars.face(&[
+                across(0.0, -9.0, z),
+                across(0.5, -9.0, z),
+                across(0.5, 9.0, z),
+                across(0.0, 9.0, z),
+            ]);
+        }
+        for (from, to) in [
+            ((0.0, -9.0), (0.5, -9.0)),
+            ((0.5, -9.0), (0.5, 9.0)),
+            ((0.5, 9.0), (0.0, 9.0)),
+            ((0.0, 9.0), (0.0, -9.0)),
+        ] {
+            let side = [(from, 0.0), (to, 0.0), (to, 1.0), (from, 1.0)];
+            bars.face(&side.map(|((x, y), z)| across(x, y, z)));
+        }
+    }
+    assert_eq!(objects(bars), (8, 0));
+    // Boxes that stand on each other touch; the plane between them is one of their sides.
+    let mut tower = Model::default();
+    for k in 0..5 {
+        let (inset, z) = (0.25 * f64::from(k), f64::from(k));
+        tower.add_box([inset, inset, z], [4.0 - inset, 5.0 - inset, z + 1.0]);
+    }
+    assert_eq!(objects(tower), (5, 0));
+    // Two frames through each other like links of a chain.
+    let mut chain = Model::default();
+    let mut frame = |place: &dyn Fn(f64, f64, f64) -> [f64; 3]| {
+        let ring = |r: f64| [(-r, -r), (r, -r), (r, r), (-r, r)];
+        for k in 0..4 {
+            let next = (k + 1) % 4;
+            for (r, q) in [
+                ((3.0, 0.0), (3.0, 1.0)),
+                ((3.0, 1.0), (2.0, 1.0)),
+                ((2.0, 1.0), (2.0, 0.0)),
+                ((2.0, 0.0), (3.0, 0.0)),
+            ] {
+                let at = |(r, z): (f64, f64), k: usize| place(ring(r)[k].0, ring(r)[k].1, z);
+                chain.face(&[at(r, k), at(r, next), at(q, next), at(q, k)]);
+            }
+        }
+    };
+    frame(&|x, y, z| [x, y, z]);
+    frame(&|x, y, z| [x + 2.5, z - 0.5, y + 0.5]);
+    let (objects, splits) = objects(chain);
+    assert!(objects == 1 && splits > 0, "{objects}, {splits}");
+}
+
+#[test]
+fn a_wall_hides_the_boxes_behind_it_from_the_tree_of_planes() {
+    let mut model = Model::default();
+    model.add_box([-20.0, -1.0, -20.0], [20.0, 0.0, 20.0]);
+    for k in 0..40 {
+        let [x, z] = [k % 8, k / 8].map(|at| 3.0 * f64::from(at) - 8.0);
+        model.add_box([x, 3.0, z], [x + 1.0, 4.0, z + 1.0]);
+    }
+    let sight = perspective([1.0, -30.0, 2.0], [0.0, 0.0, 0.0], 1e-3);
+    let (scene, camera) = built(&model.seen_by("a wall", sight));
+    let tree = bsp::BspTree::new(&scene).unwrap();
+    let (painting, hidden) = tree.paint_seen(&scene, &camera);
+    assert!(painting.pieces().all(|piece| piece.face < 6), "{hidden:?}");
+    assert!(hidden.hidden_boxes > 0 && hidden.hidden_boxes < 40, "boxes together: {hidden:?}");
+    assert!(hidden.hidden_fragments >= 480, "{hidden:?}");
 }
 
 /// The cow, which has no face larger than a few squares of the quadtree.
@@ -134,7 +229,7 @@ fn a_fine_mesh_hides_its_own_back() {
     assert!(hidden.painted + hidden.hidden_fragments <= n);
     // A closed body turns half of its faces away, all of which it hides.
     assert!(hidden.hidden_fragments * 5 > n * 2, "{hidden:?} of {n}");
-    assert!(hidden.hidden_octants > 0, "{hidden:?}");
+    assert!(hidden.hidden_boxes > 0, "{hidden:?}");
     let of_planes = bsp::solve(&scene, &camera).unwrap().0;
     let (low, high) = Corners::new(&scene, &camera).bounds().unwrap();
     let mut compared = 0;

@@ -6,6 +6,7 @@ mod counts;
 mod heaps;
 mod regions;
 mod warnock;
+mod white;
 
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::Scene as TestScene;

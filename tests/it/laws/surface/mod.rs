@@ -6,6 +6,7 @@ mod drawing;
 mod floating_horizon;
 mod height_files;
 mod level_lengths;
+mod margins;
 mod max_min;
 mod meshed;
 mod pen_path;

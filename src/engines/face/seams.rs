@@ -15,7 +15,7 @@
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use crate::engines::face::occupancy::{LEVELS, Occupancy};
+use super::occupancy::{LEVELS, Occupancy};
 
 /// Squares along each side.
 const SIDE: usize = 1 << LEVELS;
