@@ -131,7 +131,8 @@ impl LinedMesh {
     /// if `is_lined`.
     pub fn push_triangles(&mut self, points: &[DVec3], triangles: &[[u32; 3]], is_lined: bool) {
         let base = self.positions.len() as u32;
-        self.positions.extend_from_slice(points);
+        // Vertices that no triangle uses are dropped later; they only have to be finite until then.
+        self.positions.extend(points.iter().map(|p| if p.is_finite() { *p } else { DVec3::ZERO }));
         for corners in triangles {
             self.push_triangle(corners.map(|k| base + k), is_lined);
         }

@@ -6,6 +6,7 @@ use super::formula::{Formula, FormulaError, Variables};
 use super::grid::Grid;
 #[cfg(feature = "points")]
 use super::points::{PointsError, delaunay};
+use crate::model::mesh::MeshError;
 
 /// The range of x and y that a formula is sampled over, unless set otherwise.
 pub const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
@@ -101,6 +102,27 @@ impl Surface {
     #[cfg(feature = "points")]
     pub fn points(points: Vec<DVec3>) -> Result<Self, PointsError> {
         let triangles = delaunay(&points)?;
+        Ok(Self::new(Source::Triangles { points, triangles }, Aspect::Box))
+    }
+
+    /// A surface of triangles over given points: each triangle lists three indices of `points`. Points
+    /// that are not finite are holes and must not be used by triangles.
+    ///
+    /// # Errors
+    /// A triangle refers to a point that does not exist or is not finite.
+    pub fn triangles(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        for (face, corners) in triangles.iter().enumerate() {
+            for &vertex in corners {
+                match points.get(vertex as usize) {
+                    Some(point) if point.is_finite() => {}
+                    Some(_) => return Err(MeshError::NotFinite { vertex: vertex as usize }),
+                    None => {
+                        let n_vertices = points.len();
+                        return Err(MeshError::MissingVertex { face, vertex, n_vertices });
+                    }
+                }
+            }
+        }
         Ok(Self::new(Source::Triangles { points, triangles }, Aspect::Box))
     }
 

@@ -3,6 +3,10 @@
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use hiddenline::stages::camera::framing::{NamedView, ProjectionKind, Standpoint, View, ViewError};
 use hiddenline::stages::camera::{Camera, CameraError, Projection};
+use hiddenline::stages::classify::{LineSelection, ViewedScene};
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::strokes::StrokeKind;
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_deg: 30.0, near: 1e-6 };
 
@@ -165,4 +169,23 @@ fn named_views_can_be_perspective() {
     let projection = Some(ProjectionKind::Perspective);
     let camera = View { standpoint, projection, ..View::default() }.camera(BOUNDS);
     assert_eq!(camera.map(|camera| camera.projection()), Ok(PERSPECTIVE));
+}
+
+#[test]
+fn creases_depend_on_the_angle_not_on_the_winding() {
+    let (sin, cos) = (libm::sin(40f64.to_radians()), libm::cos(40f64.to_radians()));
+    let positions = vec![DVec3::ZERO, DVec3::Y, dvec3(1.0, 0.5, 0.0), dvec3(-cos, 0.5, sin)];
+    let camera = Camera::new(dvec3(0.1, 0.2, 9.0), DVec3::ZERO, DVec3::Y, PERSPECTIVE).unwrap();
+    for second in [[0, 1, 3], [1, 0, 3]] {
+        let mut soup = PolygonSoup { positions: positions.clone(), ..PolygonSoup::default() };
+        soup.push_face(&[0, 2, 1]);
+        soup.push_face(&second);
+        let scene = Scene::new(Mesh::new(soup).unwrap().0);
+        // One scene, several angles.
+        for (crease_deg, expected) in [(39.0, 1), (41.0, 0), (0.0, 1), (139.0, 0)] {
+            let creases = LineSelection::NONE.with(StrokeKind::Crease);
+            let view = ViewedScene::new(&scene, &camera, creases, crease_deg);
+            assert_eq!(view.selected().len(), expected, "{second:?}, {crease_deg}°");
+        }
+    }
 }

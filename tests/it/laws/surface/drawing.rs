@@ -10,6 +10,7 @@ use hiddenline::stages::draw::surface::{
     draw_surface,
 };
 use hiddenline::stages::engines::surface::{CellOrder, HorizonError};
+use hiddenline::stages::model::mesh::MeshError;
 use hiddenline::stages::page::PageOptions;
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::surface::{Aspect, Grid, SamplingError, Surface};
@@ -155,6 +156,19 @@ fn scattered_points_are_drawn_by_the_edges_of_their_triangles() {
     let expected = 8.0 + 4.0 * 2f64.sqrt();
     assert!((length(&drawing, StrokeKind::Mesh) - expected).abs() < 1e-12);
     assert_eq!(drawing.samples, "5 points, 4 triangles");
+}
+
+#[test]
+fn triangles_over_given_points_may_leave_holes_out_but_not_use_them() {
+    let hole = DVec3::NAN;
+    let points = || vec![dvec3(0.0, 0.0, 0.0), dvec3(2.0, 0.0, 0.0), dvec3(0.0, 2.0, 0.0), hole];
+    let surface = Surface::triangles(points(), vec![[0, 1, 2]]).expect("a surface");
+    let drawing = drawn(&surface, NamedView::Top, &bare());
+    assert!((length(&drawing, StrokeKind::Mesh) - (4.0 + 8f64.sqrt())).abs() < 1e-12);
+    let refused = |corners| Surface::triangles(points(), vec![[0, 1, 2], corners]).unwrap_err();
+    assert_eq!(refused([0, 1, 3]), MeshError::NotFinite { vertex: 3 });
+    let missing = MeshError::MissingVertex { face: 1, vertex: 4, n_vertices: 4 };
+    assert_eq!(refused([4, 1, 0]), missing);
 }
 
 #[test]
