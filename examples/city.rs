@@ -1,18 +1,7 @@
 //! A city of boxes, seen from a helicopter.
 
-mod plots;
-mod sheet;
-
 use glam::{DVec3, dvec3};
-
-use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::draw::DrawOptions;
-use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::stages::page::{PageOptions, Placement};
-use hiddenline::stages::plot::Plot;
-
-use plots::{Result, save};
-use sheet::Sheet;
+use hiddenline::{DrawOptions, Error, PageOptions, PolygonSoup, Scene, Sheet, View};
 
 const BLOCKS: i32 = 20;
 
@@ -38,7 +27,7 @@ fn push_box(soup: &mut PolygonSoup, low: DVec3, high: DVec3) {
 
 /// Towers on a square grid with streets between them, the higher the nearer to the middle; each
 /// tower is up to three boxes on top of each other.
-fn city() -> Result<Mesh> {
+fn city() -> Result<Scene, Error> {
     let mut soup = PolygonSoup::default();
     for x in -BLOCKS..BLOCKS {
         for y in -BLOCKS..BLOCKS {
@@ -59,26 +48,18 @@ fn city() -> Result<Mesh> {
             }
         }
     }
-    Ok(Mesh::new(soup)?.0)
+    Scene::from_polygons(soup)
 }
 
-pub(crate) fn plot() -> Result<Plot> {
-    let framing = View {
-        standpoint: Standpoint::Eye(dvec3(8.5, -13.5, 8.5)),
-        target: Some(dvec3(-0.5, 0.0, 1.5)),
-        fov_deg: 40.0,
-        ..View::default()
-    };
-    Sheet {
-        title: "A city",
-        mesh: city()?,
-        framing,
-        draw: DrawOptions::default(),
-        page: PageOptions { placement: Placement::FieldOfView, ..PageOptions::default() },
-    }
-    .plot()
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let view = View::from_eye(dvec3(8.5, -13.5, 8.5)).target(dvec3(-0.5, 0.0, 1.5)).fov_deg(40.0);
+    let city = city()?;
+    let drawing = city.draw(&view, &DrawOptions::default()).title("A city");
+    drawing.on(PageOptions::default().field_of_view())
 }
 
-fn main() -> Result<()> {
-    save("city", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/city.svg")?;
+    sheet.save_png("plots/city.png", 1000)
 }

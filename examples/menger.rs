@@ -1,18 +1,7 @@
 //! Menger's sponge after three steps, seen from near by.
 
-mod plots;
-mod sheet;
-
 use glam::DVec3;
-
-use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::draw::DrawOptions;
-use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::stages::page::PageOptions;
-use hiddenline::stages::plot::Plot;
-
-use plots::{Result, save};
-use sheet::Sheet;
+use hiddenline::{DrawOptions, Error, Paper, PolygonSoup, Scene, Sheet, View};
 
 const STEPS: u32 = 3;
 const SIDE: i32 = 3_i32.pow(STEPS);
@@ -31,7 +20,7 @@ fn is_left(mut cube: [i32; 3]) -> bool {
 }
 
 /// One square for each side of a small cube on which there is no other.
-fn sponge() -> Result<Mesh> {
+fn sponge() -> Result<Scene, Error> {
     let mut soup = PolygonSoup::default();
     for number in 0..SIDE.pow(3) {
         let cube = [number % SIDE, number / SIDE % SIDE, number / SIDE / SIDE];
@@ -53,22 +42,17 @@ fn sponge() -> Result<Mesh> {
             soup.push_face(&ring);
         }
     }
-    Ok(Mesh::new(soup)?.0)
+    Scene::from_polygons(soup)
 }
 
-pub(crate) fn plot() -> Result<Plot> {
-    let standpoint =
-        Standpoint::Angles { azimuth_deg: 37.0, elevation_deg: 27.0, distance: Some(62.0) };
-    Sheet {
-        title: "Menger's sponge",
-        mesh: sponge()?,
-        framing: View { standpoint, ..View::default() },
-        draw: DrawOptions::default(),
-        page: PageOptions::default(),
-    }
-    .plot()
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let view = View::from_angles(37.0, 27.0).distance(62.0);
+    let sponge = sponge()?;
+    sponge.draw(&view, &DrawOptions::default()).title("Menger's sponge").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("menger", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/menger.svg")?;
+    sheet.save_png("plots/menger.png", 1000)
 }

@@ -1,19 +1,7 @@
 //! The five regular solids, their far edges dashed.
 
-mod plots;
-mod sheet;
-
 use glam::{DQuat, DVec3, dvec3};
-
-use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::draw::DrawOptions;
-use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::stages::page::{PageOptions, Paper};
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::strokes::HiddenLines;
-
-use plots::{Result, save};
-use sheet::Sheet;
+use hiddenline::{DrawOptions, Error, HiddenLines, Paper, PolygonSoup, Scene, Sheet, View};
 
 /// The golden ratio.
 const PHI: f64 = 1.618_033_988_749_895;
@@ -60,7 +48,7 @@ fn push_solid(soup: &mut PolygonSoup, corners: &[DVec3], faces: &[DVec3], x: f64
     }
 }
 
-fn solids() -> Result<Mesh> {
+fn solids() -> Result<Scene, Error> {
     let cube = corners(&[DVec3::ONE]);
     let octahedron = corners(&[DVec3::X]);
     let icosahedron = corners(&[dvec3(0.0, 1.0, PHI)]);
@@ -79,23 +67,18 @@ fn solids() -> Result<Mesh> {
     for (i, (corners, faces)) in row.into_iter().enumerate() {
         push_solid(&mut soup, corners, faces, 2.3 * i as f64);
     }
-    Ok(Mesh::new(soup)?.0)
+    Scene::from_polygons(soup)
 }
 
-pub(crate) fn plot() -> Result<Plot> {
-    let standpoint =
-        Standpoint::Angles { azimuth_deg: 0.0, elevation_deg: 20.0, distance: Some(30.0) };
-    let paper = Paper { width_mm: 297.0, height_mm: 75.0, name: None };
-    Sheet {
-        title: "The regular solids",
-        mesh: solids()?,
-        framing: View { standpoint, ..View::default() },
-        draw: DrawOptions { hidden: HiddenLines::Dashed, ..DrawOptions::default() },
-        page: PageOptions { paper, ..PageOptions::default() },
-    }
-    .plot()
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let view = View::from_angles(0.0, 20.0).distance(30.0);
+    let lines = DrawOptions::default().hidden(HiddenLines::Dashed);
+    let solids = solids()?;
+    solids.draw(&view, &lines).title("The regular solids").on(Paper::new(297.0, 75.0))
 }
 
-fn main() -> Result<()> {
-    save("platonic", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/platonic.svg")?;
+    sheet.save_png("plots/platonic.png", 1000)
 }

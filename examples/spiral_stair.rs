@@ -1,21 +1,10 @@
 //! A spiral staircase, looking down its well.
 
-mod plots;
-mod sheet;
-
 use std::f64::consts::TAU;
 
 use glam::{DVec3, dvec3};
+use hiddenline::{DrawOptions, Error, PageOptions, PolygonSoup, Scene, Sheet, View};
 use libm::{cos, sin};
-
-use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::draw::DrawOptions;
-use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
-use hiddenline::stages::page::{PageOptions, Placement};
-use hiddenline::stages::plot::Plot;
-
-use plots::{Result, save};
-use sheet::Sheet;
 
 const STEPS: u32 = 240;
 const STEPS_A_TURN: f64 = 24.0;
@@ -23,7 +12,7 @@ const RISE: f64 = 0.12;
 const THICKNESS: f64 = 0.08;
 
 /// Winders between two radii: each a wedge with a gap to the next one above.
-fn stair() -> Result<Mesh> {
+fn stair() -> Result<Scene, Error> {
     let mut soup = PolygonSoup::default();
     for step in 0..STEPS {
         let first = soup.positions.len() as u32;
@@ -43,27 +32,20 @@ fn stair() -> Result<Mesh> {
             soup.push_face(&side.map(|corner: u32| first + corner));
         }
     }
-    Ok(Mesh::new(soup)?.0)
+    Scene::from_polygons(soup)
 }
 
-pub(crate) fn plot() -> Result<Plot> {
+pub(crate) fn sheet() -> Result<Sheet, Error> {
     let top = RISE * f64::from(STEPS);
-    let framing = View {
-        standpoint: Standpoint::Eye(dvec3(0.0, 0.0, top + 1.4)),
-        target: Some(dvec3(0.06, -0.08, 0.0)),
-        fov_deg: 50.0,
-        ..View::default()
-    };
-    Sheet {
-        title: "A spiral staircase",
-        mesh: stair()?,
-        framing,
-        draw: DrawOptions::default(),
-        page: PageOptions { placement: Placement::FieldOfView, ..PageOptions::default() },
-    }
-    .plot()
+    let eye = dvec3(0.0, 0.0, top + 1.4);
+    let view = View::from_eye(eye).target(dvec3(0.06, -0.08, 0.0)).fov_deg(50.0);
+    let stair = stair()?;
+    let drawing = stair.draw(&view, &DrawOptions::default()).title("A spiral staircase");
+    drawing.on(PageOptions::default().field_of_view())
 }
 
-fn main() -> Result<()> {
-    save("spiral_stair", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/spiral_stair.svg")?;
+    sheet.save_png("plots/spiral_stair.png", 1000)
 }

@@ -1,38 +1,15 @@
 //! Spot, a cow: every visible edge of her mesh.
 
-mod plots;
-mod sheet;
+use hiddenline::{DrawOptions, Error, Paper, Scene, Sheet, UpAxis, View};
 
-use std::path::Path;
-
-use hiddenline::stages::camera::framing::{Standpoint, View};
-use hiddenline::stages::classify::LineSelection;
-use hiddenline::stages::draw::DrawOptions;
-use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
-use hiddenline::stages::page::PageOptions;
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::read::read_file;
-
-use plots::{Result, save};
-use sheet::Sheet;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/models/spot.obj");
-    let model = read_file(Path::new(path), None)?;
-    let upright = Arrangement { up_axis: UpAxis::Y, ..Arrangement::default() };
-    let (mesh, _) = upright.arrange(vec![(model.mesh, Pose::default())])?;
-    let standpoint =
-        Standpoint::Angles { azimuth_deg: 215.0, elevation_deg: 14.0, distance: Some(4.5) };
-    Sheet {
-        title: "Spot",
-        mesh,
-        framing: View { standpoint, ..View::default() },
-        draw: DrawOptions { lines: LineSelection::all_edges(), ..DrawOptions::default() },
-        page: PageOptions::default(),
-    }
-    .plot()
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let scene = Scene::builder().up_axis(UpAxis::Y).open("examples/models/spot.obj")?.build()?;
+    let view = View::from_angles(215.0, 14.0).distance(4.5);
+    scene.draw(&view, &DrawOptions::default().all_edges()).title("Spot").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("spot", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/spot.svg")?;
+    sheet.save_png("plots/spot.png", 1000)
 }

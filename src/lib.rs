@@ -151,7 +151,7 @@ use stages::{
 // A scene.
 pub use api::{Error, SceneBuilder};
 pub use model::arrange::UpAxis;
-pub use model::mesh::Mesh;
+pub use model::mesh::{Mesh, PolygonSoup};
 pub use model::scene::Scene;
 pub use read::ModelFormat;
 

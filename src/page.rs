@@ -116,6 +116,12 @@ impl PageOptions {
     pub fn scale(self, mm_per_unit: f64) -> Self {
         Self { placement: Placement::Scale { mm_per_unit }, ..self }
     }
+
+    /// Shows exactly the field of view, in perspective.
+    #[must_use]
+    pub fn field_of_view(self) -> Self {
+        Self { placement: Placement::FieldOfView, ..self }
+    }
 }
 
 impl From<Paper> for PageOptions {

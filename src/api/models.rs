@@ -50,7 +50,15 @@ impl Scene {
         for face in faces {
             soup.push_face(face.as_ref());
         }
-        Ok(complete(Mesh::new(soup)?.0))
+        Self::from_polygons(soup)
+    }
+
+    /// Makes a scene of polygons in memory, and of polylines, which are drawn but hide nothing.
+    ///
+    /// # Errors
+    /// An index is out of range, a coordinate is not finite, or there are too many.
+    pub fn from_polygons(polygons: PolygonSoup) -> Result<Self, Error> {
+        Ok(complete(Mesh::new(polygons)?.0))
     }
 
     /// Starts a scene of one or more models.

@@ -7,6 +7,8 @@ use super::Error;
 use crate::optimize::{OptimizeOptions, optimize};
 use crate::page::PlacedPlot;
 use crate::plot::Plot;
+#[cfg(feature = "png")]
+use crate::write::png::{Marks, Resolution};
 use crate::write::{Format, Target, WriteError, write};
 
 /// A drawing on paper: pens, their strokes in millimeters, and whether all of it fits.
@@ -67,7 +69,27 @@ impl Sheet {
         let format =
             Format::from_path(path).ok_or_else(|| Error::UnknownFormat(path.to_owned()))?;
         let failed = |error| Error::Write { path: path.to_owned(), error };
-        let bytes = self.to_bytes(&Target::usual(format).map_err(failed)?).map_err(failed)?;
+        self.save_as(path, &Target::usual(format).map_err(failed)?)
+    }
+
+    /// Writes a picture of the page, so many pixels wide.
+    ///
+    /// # Errors
+    /// As for [`save_as`](Self::save_as).
+    #[cfg(feature = "png")]
+    pub fn save_png(&self, path: impl AsRef<Path>, width_px: u32) -> Result<(), Error> {
+        self.save_as(path, &Target::Png(Resolution::WidthPx(width_px), Marks::default()))
+    }
+
+    /// Writes a file of any format, for any machine. An existing file is replaced only when all is
+    /// written.
+    ///
+    /// # Errors
+    /// The plot does not suit the target, or the file cannot be written.
+    pub fn save_as(&self, path: impl AsRef<Path>, target: &Target) -> Result<(), Error> {
+        let path = path.as_ref();
+        let failed = |error| Error::Write { path: path.to_owned(), error };
+        let bytes = self.to_bytes(target).map_err(failed)?;
         // Written beside it and renamed, so that a full disk does not cost the old file.
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(format!(".{}.partial", std::process::id()));
@@ -97,5 +119,11 @@ impl Sheet {
         let mut bytes = Vec::new();
         write(&self.placed.plot, target, &mut bytes)?;
         Ok(bytes)
+    }
+}
+
+impl From<Sheet> for Plot {
+    fn from(sheet: Sheet) -> Self {
+        sheet.placed.plot
     }
 }
