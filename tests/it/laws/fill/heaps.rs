@@ -64,7 +64,7 @@ fn heaps_are_left_to_windows_and_other_engines_say_so_at_once() {
     let sorted = Prepared::new(&heap, FaceEngine::DepthSort).unwrap();
     let error = sorted.solve(&from_above(), &COARSE).unwrap_err();
     assert!(matches!(error, FaceError::NoOrder(depth_sort::DepthSortError::TooManyPiercings(_))));
-    assert!(error.to_string().ends_with("take --engine warnock"), "{error}");
+    assert_eq!(error.instead(), [FaceEngine::Warnock], "{error}");
     let map = PixelMap::fitting((DVec2::splat(-9.0), DVec2::splat(9.0)), (64, 64), 1.0);
     let painted = painter::raster(&heap, &from_above(), &map, (64, 64));
     assert!(matches!(painted, Err(painter::NoOrder)));
