@@ -9,7 +9,7 @@
 //!
 //! A fragment covers as soon as it is shown, a whole face as soon as its last fragment is, so large
 //! faces hide much; faces smaller than the smallest squares cover those together where they meet
-//! ([`seams`](super::seams)), so a fine mesh hides its own back.
+//! (`seams.rs`), so a fine mesh hides its own back.
 //!
 //! What is left out is surely hidden; what is left may be.
 //!
