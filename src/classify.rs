@@ -356,8 +356,8 @@ impl<'a> ViewedScene<'a> {
         drawn
     }
 
-    /// The lines to draw beside the edges that are `drawn`: bends that are silhouettes, wires, and
-    /// lines of intersection that are not part of one of these edges.
+    /// The lines to draw beside the edges that are `drawn`: bends that are silhouettes, wires, parts of
+    /// boundary edges, and lines of intersection that are not part of one of these edges.
     fn other_lines(
         &self,
         lines: LineSelection,
@@ -367,6 +367,9 @@ impl<'a> ViewedScene<'a> {
             |edge: u32| drawn.binary_search_by_key(&edge, |(drawn, _)| drawn.edge).is_ok();
         let is_front = |triangle: u32| self.triangle_turns[triangle as usize] == Sign::Positive;
         let has_folds = lines.contains(StrokeKind::Silhouette);
+        let every = lines.contains(StrokeKind::Mesh);
+        let has_boundary = every || lines.contains(StrokeKind::Boundary);
+        let parts = self.scene.boundary_parts();
         let (crossings, bends) = (self.scene.intersections().lines(), self.scene.bends());
         let kind = |source| match source {
             LineSource::Intersection(k) => {
@@ -380,6 +383,17 @@ impl<'a> ViewedScene<'a> {
                 (is_wanted && one != other).then_some(StrokeKind::Silhouette)
             }
             LineSource::Wire(_) => lines.contains(StrokeKind::Wire).then_some(StrokeKind::Wire),
+            LineSource::BoundaryPart(k) if parts[k as usize].is_flush => {
+                let [from, to] = parts[k as usize].ends;
+                // An edge of the face beyond is drawn in its place.
+                let edge = self.scene.topology().find_edge(from, to);
+                let is_drawn = edge.is_some_and(|edge| !self.scene.is_split(edge));
+                (every && !is_drawn).then_some(StrokeKind::Mesh)
+            }
+            LineSource::BoundaryPart(_) => {
+                let is_wanted = has_boundary || lines.has_outline();
+                is_wanted.then_some(StrokeKind::Boundary)
+            }
         };
         let first = self.scene.topology().edges().len() as u32;
         let others = self.scene.other_lines();
@@ -387,7 +401,11 @@ impl<'a> ViewedScene<'a> {
         numbered
             .filter_map(|(line, edge)| {
                 let kind = kind(line.source)?;
-                let is_whole = has_folds || !matches!(line.source, LineSource::Bend(_));
+                let is_whole = match line.source {
+                    LineSource::Bend(_) => has_folds,
+                    LineSource::BoundaryPart(_) => has_boundary,
+                    LineSource::Intersection(_) | LineSource::Wire(_) => true,
+                };
                 let is_seen = !self.sight.same_image(line.ends[0], line.ends[1]);
                 is_seen.then_some((SelectedLine { edge, kind }, is_whole))
             })
@@ -423,15 +441,22 @@ impl<'a> ViewedScene<'a> {
         };
         let chosen = |kind| (every || lines.contains(kind)).then_some(kind);
         let &[first, second] = topology.uses(edge) else {
-            let is_boundary = topology.uses(edge).len() == 1;
-            let kind = if is_boundary { StrokeKind::Boundary } else { StrokeKind::Nonmanifold };
+            let kind = match topology.uses(edge) {
+                [_] if self.scene.is_split(edge) => return None,
+                [_] if self.scene.is_flush(edge) => StrokeKind::Mesh,
+                [_] => StrokeKind::Boundary,
+                _ => StrokeKind::Nonmanifold,
+            };
             return chosen(kind).or_else(|| by_material().then_some(kind));
         };
         let faces = [first, second].map(EdgeUse::face);
         let against = first.runs_upwards() == second.runs_upwards();
         let [facing, other] = faces.map(|face| self.facing_along(face, edge));
         let other = if against { other.flipped() } else { other };
-        let is_crease = || creases.has(edge);
+        let is_crease = || {
+            let uncertain = || self.angle(faces, against) > self.angle_limit(edge, faces, creases);
+            creases.has(edge) && (creases.surely_has(edge) || uncertain())
+        };
         if (facing == Sign::Positive) != (other == Sign::Positive) {
             let by_crease = || lines.contains(StrokeKind::Crease) && is_crease();
             let by_name = every || lines.contains(StrokeKind::Silhouette);
@@ -449,14 +474,46 @@ impl<'a> ViewedScene<'a> {
             (false, false) => chosen(StrokeKind::Mesh),
         }
     }
+
+    /// The angle between the normals of two faces, in radians; of the second one turned over if they
+    /// are wound against each other.
+    fn angle(&self, faces: [u32; 2], against: bool) -> f64 {
+        let [a, b] = faces.map(|face| self.scene.normals()[face as usize]);
+        libm::atan2(a.cross(b).length(), if against { -a.dot(b) } else { a.dot(b) })
+    }
+
+    /// The largest angle at an edge that counts as equal to the crease angle, in radians.
+    ///
+    /// Angles that differ only because corners were rounded are treated alike, so the sides of a regular
+    /// prism are all creases or none. An angle is uncertain by about the uncertainty of the corners
+    /// over the height of each face above the edge.
+    fn angle_limit(&self, edge: u32, faces: [u32; 2], creases: &Creases) -> f64 {
+        let mesh = self.scene.mesh();
+        let at = |vertex: u32| mesh.positions()[vertex as usize];
+        let [from, to] = self.scene.topology().edge(edge).map(at);
+        let along = (to - from).normalize_or_zero();
+        let heights = faces.map(|face| {
+            let height = |&corner: &u32| (at(corner) - from).cross(along).length();
+            mesh.face(face).iter().map(height).fold(0.0, f64::max)
+        });
+        let tolerance = mesh.coordinate_error() * (1.0 / heights[0] + 1.0 / heights[1]);
+        creases.angle + tolerance.min(MOST_ANGLE_TOLERANCE_DEG.to_radians())
+    }
 }
+
+/// Angles may be this much above the threshold, at most, and still count as equal to it.
+const MOST_ANGLE_TOLERANCE_DEG: f64 = 0.5;
 
 /// What it takes to find creases and borders of materials, as far as either is wanted.
 struct Creases<'a> {
-    /// Of the crease angle.
+    /// The crease angle, in radians.
+    angle: f64,
+    /// Its cosine.
     cosine: f64,
     /// Of each edge, or empty.
     dihedrals: &'a [Dihedral],
+    /// The cosine of the largest angle that may count as equal to the threshold.
+    sure_cosine: f64,
     /// For each face a number that faces of equal group and material share, or empty.
     groups: &'a [u32],
 }
@@ -466,8 +523,12 @@ impl<'a> Creases<'a> {
         let has_materials = lines.contains(StrokeKind::Material);
         let has_creases =
             has_materials || lines.contains(StrokeKind::Crease) || lines.contains(StrokeKind::Mesh);
+        let angle = crease_deg.clamp(0.0, 180.0).to_radians();
+        let sure = (angle + MOST_ANGLE_TOLERANCE_DEG.to_radians()).min(std::f64::consts::PI);
         Self {
-            cosine: libm::cos(crease_deg.clamp(0.0, 180.0).to_radians()),
+            angle,
+            cosine: libm::cos(angle),
+            sure_cosine: libm::cos(sure),
             dihedrals: if has_creases { scene.dihedrals() } else { &[] },
             groups: if has_materials { scene.groups() } else { &[] },
         }
@@ -482,5 +543,10 @@ impl<'a> Creases<'a> {
     /// Whether the two faces at an edge meet at more than the crease angle.
     fn has(&self, edge: u32) -> bool {
         self.dihedrals.get(edge as usize).is_some_and(|angle| angle.is_above(self.cosine))
+    }
+
+    /// Whether they do so by more than rounding could cause.
+    fn surely_has(&self, edge: u32) -> bool {
+        self.dihedrals.get(edge as usize).is_some_and(|angle| angle.is_above(self.sure_cosine))
     }
 }

@@ -8,7 +8,7 @@ use super::Error;
 use crate::model::arrange::{Arrangement, Pose, UpAxis};
 use crate::model::mesh::{Mesh, PolygonSoup};
 use crate::model::scene::Scene;
-use crate::read::{ModelFormat, Warning, read_bytes, read_file};
+use crate::read::{Model, ModelFormat, Warning, read_bytes, read_file};
 
 impl Scene {
     /// Reads one model file, z up. The extension says its format, or else the content.
@@ -83,32 +83,36 @@ impl Scene {
 #[derive(Debug, Default)]
 #[must_use]
 pub struct SceneBuilder {
-    arrangement: Arrangement,
-    models: Vec<(Mesh, Pose)>,
+    up_axis: Option<UpAxis>,
+    weld_distance: f64,
+    /// Millimeters in a unit of the scene, once a model says so.
+    unit_mm: Option<f64>,
+    /// Each model, its place, and its format if it came in one.
+    models: Vec<(Mesh, Pose, Option<ModelFormat>)>,
     warnings: Vec<Warning>,
 }
 
 impl SceneBuilder {
-    /// Which axis points up in the models; z unless set.
+    /// Which axis points up in the models; unless set, y in glTF and z in all other formats.
     pub fn up_axis(mut self, axis: UpAxis) -> Self {
-        self.arrangement.up_axis = axis;
+        self.up_axis = Some(axis);
         self
     }
 
     /// Merges vertices closer together than `distance`, in model units.
     pub fn weld(mut self, distance: f64) -> Self {
-        self.arrangement.weld_distance = distance;
+        self.weld_distance = distance;
         self
     }
 
     /// Adds a model file.
     ///
+    /// Formats that define a unit (glTF, 3MF) are scaled to that of the first such model.
+    ///
     /// # Errors
     /// The file cannot be read, is damaged, or has no faces.
     pub fn open(mut self, path: impl AsRef<Path>) -> Result<Self, Error> {
-        let model = read_file(path.as_ref(), None)?;
-        self.warnings.extend(model.warnings);
-        self.models.push((model.mesh, Pose::default()));
+        self.push(read_file(path.as_ref(), None)?);
         Ok(self)
     }
 
@@ -117,21 +121,29 @@ impl SceneBuilder {
     /// # Errors
     /// The bytes are damaged or have no faces.
     pub fn bytes(mut self, name: &str, bytes: &[u8], format: ModelFormat) -> Result<Self, Error> {
-        let model = read_bytes(name, bytes, Some(format))?;
-        self.warnings.extend(model.warnings);
-        self.models.push((model.mesh, Pose::default()));
+        self.push(read_bytes(name, bytes, Some(format))?);
         Ok(self)
     }
 
     /// Adds a mesh.
     pub fn mesh(mut self, mesh: Mesh) -> Self {
-        self.models.push((mesh, Pose::default()));
+        self.models.push((mesh, Pose::default(), None));
         self
+    }
+
+    fn push(&mut self, model: Model) {
+        self.warnings.extend(model.warnings);
+        let scale = match model.unit_mm {
+            Some(unit_mm) => unit_mm / *self.unit_mm.get_or_insert(unit_mm),
+            None => 1.0,
+        };
+        let pose = Pose { scale, ..Pose::default() };
+        self.models.push((model.mesh, pose, Some(model.format)));
     }
 
     /// Scales the model added last.
     pub fn scaled(self, factor: f64) -> Self {
-        self.posed(|pose| pose.scale = factor)
+        self.posed(|pose| pose.scale *= factor)
     }
 
     /// Rotates the model added last by angles in degrees around x, then y, then z.
@@ -145,7 +157,7 @@ impl SceneBuilder {
     }
 
     fn posed(mut self, change: impl FnOnce(&mut Pose)) -> Self {
-        if let Some((_, pose)) = self.models.last_mut() {
+        if let Some((_, pose, _)) = self.models.last_mut() {
             change(pose);
         }
         self
@@ -156,17 +168,26 @@ impl SceneBuilder {
         &self.warnings
     }
 
-    /// Puts the models together and finds everything that no view changes: edges, triangles, lines
-    /// of intersection.
+    /// Puts the models together, merges equal faces, and finds everything that no view changes: edges,
+    /// triangles, lines of intersection.
     ///
     /// # Errors
     /// A coordinate becomes infinite, or there are too many faces for one mesh.
     pub fn build(self) -> Result<Scene, Error> {
-        Ok(complete(self.arrangement.arrange(self.models)?.0))
+        let Self { up_axis, weld_distance, models, .. } = self;
+        let upright = |(mesh, pose, format): (Mesh, Pose, Option<ModelFormat>)| {
+            let up_axis = match format {
+                Some(format) => format.up_axis_as_read(up_axis),
+                None => up_axis.unwrap_or_default(),
+            };
+            (mesh, Pose { up_axis, ..pose })
+        };
+        let arrangement = Arrangement { weld_distance, merge_equal_faces: true };
+        Ok(complete(arrangement.arrange(models.into_iter().map(upright).collect())?.0))
     }
 }
 
 /// The scene with all lines that can be asked for.
 fn complete(mesh: Mesh) -> Scene {
-    Scene::new(mesh).with_bends().with_intersections()
+    Scene::new(mesh).with_bends().with_flush_edges().with_intersections()
 }

@@ -17,7 +17,7 @@ use self::lines::LineArgs;
 use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
-use super::page::PageArgs;
+use super::page::{self, PageArgs};
 use super::paper::{Run, Sheet};
 use super::scene::Subject;
 use super::{Refused, config, source};
@@ -39,9 +39,9 @@ Examples:
 
 /// Draw models as lines, the hidden ones removed
 ///
-/// Reads OBJ, STL (text or binary), PLY and OFF, and writes SVG for print and pen plotters, PNG, or
-/// the strokes as JSON. Several models are drawn together as one scene. The drawing is exact: what
-/// hides what is decided without rounding and without tolerances.
+/// Reads OBJ, STL (text or binary), PLY, OFF, glTF (.gltf, .glb) and 3MF, and writes SVG for print
+/// and pen plotters, PNG, or the strokes as JSON. Several models are drawn together as one scene. The
+/// drawing is exact: what hides what is decided without rounding and without tolerances.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct DrawArgs {
@@ -75,6 +75,8 @@ impl DrawArgs {
     pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { model, camera, lines, page, output } = self;
         let files = model.files()?;
+        let files = if lines.exact { files.with_equal_faces() } else { files };
+        let files = files.in_unit(page.given_unit_mm());
         let mut output = output.options(lines.exact)?;
         output.warnings.extend(lines.without_effect(&output.plotting));
         let view = camera.view_source();
@@ -102,11 +104,14 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = Some(job.draw.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, !job.draw.exact, &run.progress, &mut run.stats)?;
+    // Without --unit the page was made for millimeters.
+    let unit_mm = notes.unit_mm.unwrap_or(1.0);
+    let page = page::in_unit(job.page, unit_mm);
     run.notes.add(notes);
-    run.unit_mm = job.unit_mm;
-    run.dxf_scale = job.dxf_scale;
+    run.unit_mm = job.unit_mm * unit_mm;
+    run.dxf_scale = page::dxf_in_unit(job.dxf_scale, &page, unit_mm);
     run.progress.stage("drawing");
-    let sheet = Sheet::new(scene.extent(&camera), camera, &job.page)?;
+    let sheet = Sheet::new(scene.extent(&camera), camera, &page)?;
     let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
     run.stats.count(MeshSize::of(&scene));
     run.stats.add(&drawn);

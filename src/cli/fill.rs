@@ -27,7 +27,7 @@ use super::camera::{CameraArgs, ViewSource};
 use super::input::{Input, InputArgs};
 use super::messages::counted;
 use super::output::{OutputArgs, OutputOptions, check_place};
-use super::page::PageArgs;
+use super::page::{self, PageArgs};
 use super::paper::{Run, placed};
 use super::progress::Progress;
 use super::scene::Subject;
@@ -125,7 +125,7 @@ impl FillArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
         let Self { input, camera, areas, edges, page, output } = self;
-        let input = input.input(DEFAULT_SAMPLES)?;
+        let input = input.input(DEFAULT_SAMPLES)?.in_unit(page.given_unit_mm());
         let output = output.options(false)?;
         if !output.format.has_fills() {
             return Err(NoFills(output.format).to_string().into());
@@ -180,6 +180,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = job.edges.map(|edges| edges.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, lines.is_some(), &run.progress, &mut run.stats)?;
+    // Without --unit the page was made for millimeters.
+    let page = page::in_unit(job.page, notes.unit_mm.unwrap_or(1.0));
     run.notes.add(notes);
     let mut fill = job.fill.clone();
     for path in job.input.models() {
@@ -192,14 +194,14 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.stats.engine = prepared.engine().name().into();
     run.stats.count(MeshSize::of(&scene));
     let Some(n) = job.turntable else {
-        let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame: None };
+        let picture = Picture { job, page, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
     let Run { output, start, progress, stats, mut notes, unit_mm, empty_because, dxf_scale } = run;
     drop(progress);
     let cameras = camera.turntable(n.into())?;
     let frame = Some(scene.extent_of_views(&cameras));
-    let picture = Picture { job, scene: &scene, prepared: &prepared, fill, frame };
+    let picture = Picture { job, page, scene: &scene, prepared: &prepared, fill, frame };
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
@@ -223,6 +225,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 /// What all pictures of a turntable have in common.
 struct Picture<'a> {
     job: &'a Job,
+    page: PageOptions,
     scene: &'a Scene,
     prepared: &'a Prepared<'a>,
     fill: FillOptions,
@@ -237,11 +240,11 @@ impl Picture<'_> {
         mut run: Run,
         path: Option<&Path>,
     ) -> Result<(), Box<dyn Error>> {
-        let Self { job, scene, .. } = self;
+        let Self { job, page, scene, .. } = self;
         run.progress.stage("filling");
         let mut options = self.fill.clone();
         let extent = self.frame.unwrap_or_else(|| scene.extent(camera));
-        let page = placed(&extent, camera, &job.page)?;
+        let page = placed(&extent, camera, page)?;
         options.settings.leaf = Some(job.leaf_mm / page.mm_per_image_unit());
         let filled: Filled = timed(&mut run.stats.seconds.visibility, || match &job.edges {
             Some(edges) if job.paints_over => {

@@ -57,6 +57,15 @@ impl InputArgs {
 }
 
 impl Input {
+    /// The same with models in a unit of so many millimeters, whatever their files say.
+    #[must_use]
+    pub(super) fn in_unit(self, unit_mm: Option<f64>) -> Self {
+        match self {
+            Self::Files(files) => Self::Files(files.in_unit(unit_mm)),
+            sheets => sheets,
+        }
+    }
+
     pub(super) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         match self {
             Self::Files(files) => files.read(),

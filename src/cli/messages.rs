@@ -13,6 +13,10 @@ pub(super) fn warning(message: &str) {
     labeled(AnsiColor::Yellow.on_default().bold(), "warning", message);
 }
 
+pub(super) fn hint(message: &str) {
+    labeled(AnsiColor::Cyan.on_default().bold(), "hint", message);
+}
+
 /// A line without label. If nobody listens, nothing is lost.
 pub(super) fn plain(message: impl Display) {
     let _ = writeln!(anstream::stderr(), "{message}");

@@ -1,4 +1,4 @@
-//! Model files: which, in what format, and how they become one mesh.
+//! Model files: which ones, in what format, and how they become one mesh.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
+use hiddenline::stages::model::diagnosis::{open_seams, seems_y_up};
 use hiddenline::stages::model::mesh::{Mesh, Repairs};
-use hiddenline::stages::read::{ModelFormat, material_files, read_file};
+use hiddenline::stages::read::{Fault, Model, ModelFormat, ReadError, material_files, read_file};
 
 use super::messages::counted;
 use super::paper::Notes;
@@ -17,28 +18,28 @@ use super::values;
 #[derive(Args)]
 #[command(next_help_heading = "Model")]
 pub(super) struct ModelArgs {
-    /// Files to draw: .obj, .stl, .ply, .off; `-` is standard input
+    /// Files to draw: .obj, .stl, .ply, .off, .gltf, .glb, .3mf; `-` is standard input
     #[arg(value_name = "MODEL", required = true)]
     models: Vec<PathBuf>,
-    /// Format of the models, whatever they are named
+    /// Format of the models, regardless of their names
     ///
-    /// Without it the name's extension decides, and where that says nothing, the content.
+    /// Without it, the extension of each name decides, or else the content.
     #[arg(long, value_name = "FORMAT", value_enum)]
     input_format: Option<InputFormat>,
-    /// Axis that points up in the models
-    #[arg(long, value_name = "AXIS", value_enum, default_value = "z")]
-    up_axis: Axis,
+    /// Axis that points up in the models [default: z, but y in glTF]
+    #[arg(long, value_name = "AXIS", value_enum)]
+    up_axis: Option<Axis>,
     /// Factor for all coordinates; once for all models, or once for each in their order
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
     scale: Vec<f64>,
-    /// Turn by angles in degrees around x, then y, then z; once for all models, or once for each
+    /// Rotate by angles in degrees around x, then y, then z; once for all models, or once for each
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     rotate: Vec<DVec3>,
-    /// Move by so much, after scaling and turning; once for all models, or once for each
+    /// Move by this vector, after scaling and rotating; once for all models, or once for each
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vector)]
     #[arg(allow_hyphen_values = true)]
     move_by: Vec<DVec3>,
-    /// Make one vertex of those closer together than this, in model units
+    /// Merge vertices closer than this, in model units
     #[arg(long, value_name = "D", value_parser = values::not_negative, default_value_t = 0.0)]
     weld: f64,
 }
@@ -49,9 +50,13 @@ enum InputFormat {
     Stl,
     Ply,
     Off,
+    #[value(alias = "glb")]
+    Gltf,
+    #[value(name = "3mf")]
+    ThreeMf,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Axis {
     Y,
     Z,
@@ -63,6 +68,9 @@ pub(super) struct ModelFiles {
     /// One for each model.
     poses: Vec<Pose>,
     input_format: Option<ModelFormat>,
+    up_axis: Option<Axis>,
+    /// Millimeters in a model unit, which overrides the files.
+    unit_mm: Option<f64>,
     arrangement: Arrangement,
 }
 
@@ -75,13 +83,9 @@ impl ModelArgs {
         Ok(ModelFiles {
             poses: self.poses()?,
             input_format: self.input_format.map(InputFormat::format),
-            arrangement: Arrangement {
-                up_axis: match self.up_axis {
-                    Axis::Y => UpAxis::Y,
-                    Axis::Z => UpAxis::Z,
-                },
-                weld_distance: self.weld,
-            },
+            up_axis: self.up_axis,
+            unit_mm: None,
+            arrangement: Arrangement { weld_distance: self.weld, merge_equal_faces: true },
             models: self.models,
         })
     }
@@ -94,36 +98,96 @@ impl ModelArgs {
         let moves = for_each_model("--move", &self.move_by, DVec3::ZERO, n_models)?;
         let placed = scales.into_iter().zip(turns).zip(moves);
         Ok(placed
-            .map(|((scale, rotate_deg), move_by)| Pose { scale, rotate_deg, move_by })
+            .map(|((scale, rotate_deg), move_by)| Pose {
+                scale,
+                rotate_deg,
+                move_by,
+                ..Pose::default()
+            })
             .collect())
     }
 }
 
+impl Axis {
+    fn up(self) -> UpAxis {
+        match self {
+            Self::Y => UpAxis::Y,
+            Self::Z => UpAxis::Z,
+        }
+    }
+}
+
 impl ModelFiles {
+    /// The same, but equal faces are not merged.
+    #[must_use]
+    pub(super) fn with_equal_faces(mut self) -> Self {
+        self.arrangement.merge_equal_faces = false;
+        self
+    }
+
+    /// The same with models in a unit of so many millimeters, which overrides the files.
+    #[must_use]
+    pub(super) fn in_unit(mut self, unit_mm: Option<f64>) -> Self {
+        self.unit_mm = unit_mm;
+        self
+    }
+
     /// Reads them all into one mesh.
     pub(super) fn read(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         let mut notes = Notes::default();
         let mut models = Vec::with_capacity(self.models.len());
         let mut repairs = Repairs::default();
         for (path, &pose) in self.models.iter().zip(&self.poses) {
-            let model = read_file(path, self.input_format)?;
+            let model = read_file(path, self.input_format).map_err(with_remedy)?;
             notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
+            notes.hints.extend(self.up_axis_hint(&model, &title(path)));
             repairs += model.repairs;
-            models.push((model.mesh, pose));
+            let scale = pose.scale * self.unit_factor(&model, &title(path), &mut notes);
+            let up_axis = model.format.up_axis_as_read(self.up_axis.map(Axis::up));
+            models.push((model.mesh, Pose { up_axis, scale, ..pose }));
         }
         let (mesh, arranged) = self.arrangement.arrange(models)?;
         repairs += arranged;
-        if mesh.n_faces() == 0 {
+        if mesh.n_faces() == 0 && mesh.wires().is_empty() {
             return Err("no face is left; give a smaller --weld".into());
         }
+        if self.arrangement.weld_distance == 0.0 && self.arrangement.merge_equal_faces {
+            notes.hints.extend(weld_hint(&mesh));
+        }
         notes.summary = format!(
-            "{}: {}, {}{}",
+            "{}: {}, {}{}{}",
             self.title(),
             counted(mesh.positions().len(), "vertex", "vertices"),
             counted(mesh.n_faces(), "face", "faces"),
+            match mesh.wires().len() {
+                0 => String::new(),
+                n => format!(", {}", counted(n, "wire", "wires")),
+            },
             described(repairs)
         );
         Ok((mesh, notes))
+    }
+
+    /// A hint when an OBJ file, which cannot say, seems to be made with y up.
+    fn up_axis_hint(&self, model: &Model, name: &str) -> Option<String> {
+        let is_open = self.up_axis.is_none() && model.format == ModelFormat::Obj;
+        (is_open && seems_y_up(&model.mesh))
+            .then(|| format!("{name} seems to be made with y up; if so, give --up-axis y"))
+    }
+
+    /// What brings a model to the unit of the scene, that of the first model which has one.
+    fn unit_factor(&self, model: &Model, name: &str, notes: &mut Notes) -> f64 {
+        let (None, Some(unit_mm)) = (self.unit_mm, model.unit_mm) else { return 1.0 };
+        let scene_mm = *notes.unit_mm.get_or_insert(unit_mm);
+        if scene_mm == unit_mm {
+            return 1.0;
+        }
+        let factor = unit_mm / scene_mm;
+        notes.hints.push(format!(
+            "{name} is in units of {unit_mm} mm and was scaled by {factor}, to units of {scene_mm} mm; \
+             --unit keeps all models as they are"
+        ));
+        factor
     }
 
     /// All files that are read: the models, and those that they name.
@@ -138,7 +202,7 @@ impl ModelFiles {
     }
 }
 
-/// The values of an option that is given not at all, once for all models, or once for each.
+/// The values of an option that may be given once for all models, once for each, or not at all.
 fn for_each_model<T: Copy>(
     name: &str,
     given: &[T],
@@ -163,8 +227,31 @@ impl InputFormat {
             Self::Stl => ModelFormat::Stl,
             Self::Ply => ModelFormat::Ply,
             Self::Off => ModelFormat::Off,
+            Self::Gltf => ModelFormat::Gltf,
+            Self::ThreeMf => ModelFormat::ThreeMf,
         }
     }
+}
+
+/// An error in a model file with the option that may help.
+fn with_remedy(error: ReadError) -> Box<dyn Error> {
+    match error.fault {
+        Fault::UnknownFormat => {
+            let formats = "obj, stl, ply, off, gltf or 3mf";
+            format!("{error}; if it is a model, give --input-format {formats}").into()
+        }
+        _ => error.into(),
+    }
+}
+
+/// A hint when vertices that should be shared are only nearly equal.
+fn weld_hint(mesh: &Mesh) -> Option<String> {
+    let seams = open_seams(mesh)?;
+    Some(format!(
+        "{} of {} edges belong to only one face, as if their vertices were nearly equal; \
+         --weld {} merges them",
+        seams.n_open, seams.n_edges, seams.distance
+    ))
 }
 
 fn described(repairs: Repairs) -> String {
@@ -178,6 +265,7 @@ fn described(repairs: Repairs) -> String {
             "wire without length or given twice left out",
             "wires without length or given twice left out",
         ),
+        (repairs.equal_faces, "equal face merged", "equal faces merged"),
     ]
     .iter()
     .filter(|(count, ..)| *count > 0)

@@ -236,6 +236,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
             counted(run.stats.points, "point", "points"),
             hint.unwrap_or_default()
         ),
+        ..Notes::default()
     });
     let paper = format!("{} x {} mm", tenths(plot.width_mm), tenths(plot.height_mm));
     let usual = OptimizeOptions { shortest_mm: job.shortest_mm, ..OptimizeOptions::default() };

@@ -32,9 +32,9 @@ pub(super) struct PageArgs {
     /// In perspective it holds at the distance of the target. Coordinates in DXF are then model units.
     #[arg(long, value_name = "1:N", value_parser = values::scale, conflicts_with = "fit_fov")]
     drawing_scale: Option<f64>,
-    /// What a model unit is, for --drawing-scale
-    #[arg(long, value_enum, default_value = "mm")]
-    unit: LengthUnit,
+    /// What a model unit is, for --drawing-scale [default: what the model says, else mm]
+    #[arg(long, value_enum)]
+    unit: Option<LengthUnit>,
     /// Show exactly the field of view between the upper and the lower margin
     #[arg(long)]
     fit_fov: bool,
@@ -60,7 +60,7 @@ impl PageArgs {
     /// What coordinates in DXF mean: model units if the drawing has a scale, or else millimeters on
     /// paper.
     pub(super) fn dxf_scale(&self) -> DxfScale {
-        let unit = match self.unit {
+        let unit = match self.unit.unwrap_or(LengthUnit::Mm) {
             LengthUnit::Mm => DxfUnit::Millimeter,
             LengthUnit::Cm => DxfUnit::Centimeter,
             LengthUnit::M => DxfUnit::Meter,
@@ -70,14 +70,19 @@ impl PageArgs {
         self.drawing_scale.map_or(DxfScale::default(), at_scale)
     }
 
-    /// Millimeters of a model unit, for --drawing-scale.
-    pub(super) fn unit_mm(&self) -> f64 {
-        match self.unit {
+    /// Millimeters in a model unit, if it was given.
+    pub(super) fn given_unit_mm(&self) -> Option<f64> {
+        self.unit.map(|unit| match unit {
             LengthUnit::Mm => 1.0,
             LengthUnit::Cm => 10.0,
             LengthUnit::M => 1000.0,
             LengthUnit::In => 25.4,
-        }
+        })
+    }
+
+    /// Millimeters in a model unit, for --drawing-scale.
+    pub(super) fn unit_mm(&self) -> f64 {
+        self.given_unit_mm().unwrap_or(1.0)
     }
 
     pub(super) fn options(&self) -> PageOptions {
@@ -95,5 +100,29 @@ impl PageArgs {
                 (None, false) => Placement::Fit,
             },
         }
+    }
+}
+
+/// The same page for models in a unit of so many millimeters rather than in millimeters.
+pub(super) fn in_unit(page: PageOptions, unit_mm: f64) -> PageOptions {
+    let placement = match page.placement {
+        Placement::Scale { mm_per_unit } => Placement::Scale { mm_per_unit: mm_per_unit * unit_mm },
+        other => other,
+    };
+    PageOptions { placement, ..page }
+}
+
+/// The same meaning of coordinates in DXF for models in a unit of so many millimeters rather than in
+/// millimeters. In units other than these, coordinates stay in millimeters.
+pub(super) fn dxf_in_unit(scale: DxfScale, page: &PageOptions, unit_mm: f64) -> DxfScale {
+    let unit = match unit_mm {
+        10.0 => DxfUnit::Centimeter,
+        25.4 => DxfUnit::Inch,
+        1000.0 => DxfUnit::Meter,
+        _ => return scale,
+    };
+    match page.placement {
+        Placement::Scale { mm_per_unit } => DxfScale { mm_per_unit, unit },
+        _ => scale,
     }
 }

@@ -29,13 +29,18 @@ use super::{file, machine, messages};
 #[derive(Default)]
 pub(super) struct Notes {
     pub(super) warnings: Vec<String>,
+    /// What may help; unlike warnings, --strict lets them pass.
+    pub(super) hints: Vec<String>,
     pub(super) summary: String,
+    /// Millimeters in a model unit, where a model says so and --unit does not.
+    pub(super) unit_mm: Option<f64>,
 }
 
 impl Notes {
     /// Adds what else there is to tell.
     pub(super) fn add(&mut self, other: Self) {
         self.warnings.extend(other.warnings);
+        self.hints.extend(other.hints);
         self.summary.push_str(&other.summary);
     }
 }
@@ -308,6 +313,7 @@ impl<'a> Run<'a> {
         stats.peak_bytes = peak_bytes();
         if !output.quiet {
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
+            self.notes.hints.iter().for_each(|hint| messages::hint(hint));
             if !self.notes.summary.is_empty() {
                 messages::plain(&self.notes.summary);
             }

@@ -22,8 +22,8 @@ pub(super) struct Subject {
 }
 
 impl Subject {
-    /// Reads a mesh and finds its edges, where faces cross if `lines` ask for that, and where bent
-    /// faces are folded if there are lines that may run there.
+    /// Reads a mesh and finds its edges, where faces cross if `lines` ask for that, and, if there are
+    /// lines to draw that need not be exact, where bent faces are folded and edges lie flush.
     pub(super) fn read(
         mesh: impl FnOnce() -> Result<(Mesh, Notes), Box<dyn Error>>,
         view: &ViewSource,
@@ -39,7 +39,7 @@ impl Subject {
         let crosses = lines.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
         let scene = timed(&mut stats.seconds.topology, || {
             let scene = Scene::new(mesh);
-            let scene = if finds_bends { scene.with_bends() } else { scene };
+            let scene = if finds_bends { scene.with_bends().with_flush_edges() } else { scene };
             if crosses { scene.with_intersections() } else { scene }
         });
         Ok(Self { scene, camera, notes })

@@ -1,103 +1,136 @@
-//! Models put together: turned upright, each scaled, rotated and moved to its place, merged into
-//! one mesh, welded.
+//! Several models as one mesh: each turned upright, scaled, rotated and moved into place; then near
+//! vertices and equal faces are merged.
 
 use glam::{DMat3, DVec3};
 
 use crate::camera::framing::sin_cos_deg;
-use crate::model::mesh::{Mesh, MeshError, Part, PolygonSoup, Repairs};
+use crate::model::mesh::{Mesh, MeshError, MeshPart, PolygonSoup, Repairs};
 
-/// The axis that points up in a model.
+/// The axis of a mesh that points up.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum UpAxis {
-    /// Models made with y up are turned by a quarter around x.
+    /// The mesh is turned by a quarter around x.
     Y,
-    /// Nothing to do.
+    /// The mesh is turned by a quarter around x, the other way.
+    NegativeY,
+    /// The mesh is turned by a half around x.
+    NegativeZ,
+    /// The mesh stays as it is.
     #[default]
     Z,
 }
 
-/// Where a model goes, in this order.
+/// How a model is placed in the scene; applied in the order of the fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
+    /// The axis that points up before the model is placed.
+    pub up_axis: UpAxis,
     /// Factor for all coordinates.
     pub scale: f64,
-    /// Angles in degrees around x, then y, then z, each counter-clockwise seen from its tip.
+    /// Angles in degrees around x, then y, then z, each counterclockwise as seen from the tip of
+    /// its axis.
     pub rotate_deg: DVec3,
-    /// What is added to all positions at last, in model units after scaling.
+    /// Translation, in model units after scaling.
     pub move_by: DVec3,
 }
 
 impl Default for Pose {
     fn default() -> Self {
-        Self { scale: 1.0, rotate_deg: DVec3::ZERO, move_by: DVec3::ZERO }
+        Self {
+            up_axis: UpAxis::default(),
+            scale: 1.0,
+            rotate_deg: DVec3::ZERO,
+            move_by: DVec3::ZERO,
+        }
     }
 }
 
-/// What is done to all models alike.
+/// What is done to the scene as a whole once all models are placed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Arrangement {
-    /// Which axis points up, before a model is placed.
-    pub up_axis: UpAxis,
-    /// Vertices closer together than this, in model units after scaling, become one; see
-    /// [`Mesh::weld`].
+    /// Vertices closer than this, in model units after scaling, are merged; see [`Mesh::weld`].
     pub weld_distance: f64,
+    /// Faces with the same border are merged; see [`Mesh::merge_equal_faces`].
+    pub merge_equal_faces: bool,
 }
 
 impl Arrangement {
-    /// Puts meshes together, each in its place. A single mesh to which nothing is done stays bit for
-    /// bit as it is.
+    /// Combines meshes into one, each in its place. A single mesh that is neither moved nor merged stays
+    /// bit for bit the same.
     ///
-    /// The whole turn of a mesh is one matrix, applied once; turns by quarters are exact. Vertices
-    /// of different meshes that end up at equal positions become one.
+    /// The rotation of a mesh is one matrix, applied once; quarter turns are exact. Vertices of
+    /// different meshes that end up at the same position are merged.
     ///
     /// # Errors
-    /// A coordinate becomes infinite, the meshes together are too large for one, or the weld
-    /// distance is negative.
+    /// A coordinate overflows, the meshes together are too large for one, or the weld distance is
+    /// negative.
     pub fn arrange(&self, mut models: Vec<(Mesh, Pose)>) -> Result<(Mesh, Repairs), MeshError> {
         let is_in_place =
             |models: &[(Mesh, Pose)]| matches!(models, [(_, pose)] if *pose == Pose::default());
-        if *self == Self::default() && is_in_place(&models) {
-            return Ok((models.pop().unwrap_or_default().0, Repairs::default()));
+        if self.weld_distance == 0.0 && is_in_place(&models) {
+            return Ok(self.merged(models.pop().unwrap_or_default().0, Repairs::default()));
         }
-        let mut soup = PolygonSoup::default();
+        let mut soup = PolygonSoup { coordinate_error: Some(0.0), ..PolygonSoup::default() };
         for (number, (mesh, pose)) in (0..).zip(&models) {
-            let first = soup.positions.len();
+            let (first, first_normal) = (soup.positions.len(), soup.corner_normals.len());
             append(&mut soup, mesh, number)?;
-            let matrix = self.matrix(pose);
+            let error = soup.coordinate_error.unwrap_or_default();
+            soup.coordinate_error = Some(error.max(mesh.coordinate_error() * pose.scale));
+            let rotation = rotation(pose);
+            let matrix = rotation * pose.scale;
             if matrix != DMat3::IDENTITY || pose.move_by != DVec3::ZERO {
                 for position in &mut soup.positions[first..] {
                     *position = matrix * *position + pose.move_by;
                 }
             }
+            if rotation != DMat3::IDENTITY {
+                for normal in &mut soup.corner_normals[first_normal..] {
+                    let turned = rotation * DVec3::from_array(normal.map(f64::from));
+                    *normal = turned.to_array().map(|c| c as f32);
+                }
+            }
+        }
+        if !soup.corner_normals.is_empty() {
+            soup.corner_normals.resize(soup.corners.len(), [0.0; 3]);
         }
         drop(models);
         let (mesh, mut repairs) = Mesh::new(soup)?;
         let (mesh, welded) = mesh.weld(self.weld_distance)?;
         repairs += welded;
-        Ok((mesh, repairs))
+        Ok(self.merged(mesh, repairs))
     }
 
-    fn matrix(&self, pose: &Pose) -> DMat3 {
-        let upright = match self.up_axis {
-            UpAxis::Y => DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y),
-            UpAxis::Z => DMat3::IDENTITY,
-        };
-        let ((sx, cx), (sy, cy), (sz, cz)) = (
-            sin_cos_deg(pose.rotate_deg.x),
-            sin_cos_deg(pose.rotate_deg.y),
-            sin_cos_deg(pose.rotate_deg.z),
-        );
-        let around_x =
-            DMat3::from_cols(DVec3::X, DVec3::new(0.0, cx, sx), DVec3::new(0.0, -sx, cx));
-        let around_y =
-            DMat3::from_cols(DVec3::new(cy, 0.0, -sy), DVec3::Y, DVec3::new(sy, 0.0, cy));
-        let around_z =
-            DMat3::from_cols(DVec3::new(cz, sz, 0.0), DVec3::new(-sz, cz, 0.0), DVec3::Z);
-        around_z * around_y * around_x * upright * pose.scale
+    /// Merges equal faces if asked to.
+    fn merged(&self, mesh: Mesh, mut repairs: Repairs) -> (Mesh, Repairs) {
+        if !self.merge_equal_faces {
+            return (mesh, repairs);
+        }
+        let (mesh, merged) = mesh.merge_equal_faces();
+        repairs += merged;
+        (mesh, repairs)
     }
 }
 
-/// Adds the faces, wires and parts of `mesh`, which is the model with this number, to `soup`.
+/// The rotation of a mesh, the one that makes it upright included.
+fn rotation(pose: &Pose) -> DMat3 {
+    let upright = match pose.up_axis {
+        UpAxis::Y => DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y),
+        UpAxis::NegativeY => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
+        UpAxis::NegativeZ => DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z),
+        UpAxis::Z => DMat3::IDENTITY,
+    };
+    let ((sx, cx), (sy, cy), (sz, cz)) = (
+        sin_cos_deg(pose.rotate_deg.x),
+        sin_cos_deg(pose.rotate_deg.y),
+        sin_cos_deg(pose.rotate_deg.z),
+    );
+    let around_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, cx, sx), DVec3::new(0.0, -sx, cx));
+    let around_y = DMat3::from_cols(DVec3::new(cy, 0.0, -sy), DVec3::Y, DVec3::new(sy, 0.0, cy));
+    let around_z = DMat3::from_cols(DVec3::new(cz, sz, 0.0), DVec3::new(-sz, cz, 0.0), DVec3::Z);
+    around_z * around_y * around_x * upright
+}
+
+/// Adds all that is in `mesh`, the model with this number, to `soup`.
 fn append(soup: &mut PolygonSoup, mesh: &Mesh, model: u32) -> Result<(), MeshError> {
     let too_large = |_| MeshError::TooLarge;
     let first_vertex = u32::try_from(soup.positions.len()).map_err(too_large)?;
@@ -106,15 +139,20 @@ fn append(soup: &mut PolygonSoup, mesh: &Mesh, model: u32) -> Result<(), MeshErr
     u32::try_from(n_corners.max(n_vertices)).map_err(too_large)?;
     let first_corner = soup.corners.len() as u32;
     let first_part = soup.parts.len() as u32;
+    if !mesh.corner_normals().is_empty() {
+        soup.corner_normals.resize(soup.corners.len(), [0.0; 3]);
+        soup.corner_normals.extend_from_slice(mesh.corner_normals());
+    }
+    let wires = mesh.wires().iter();
+    soup.wires.extend(wires.map(|ends| ends.map(|end| first_vertex + end)));
     soup.positions.extend_from_slice(mesh.positions());
     soup.corners.extend(mesh.corners().iter().map(|corner| first_vertex + corner));
-    soup.wires.extend(mesh.wires().iter().map(|ends| ends.map(|end| first_vertex + end)));
     soup.face_starts.extend(mesh.face_starts().iter().skip(1).map(|end| first_corner + end));
     if mesh.face_parts().is_empty() {
-        soup.parts.push(Part { model, ..Part::default() });
+        soup.parts.push(MeshPart { model, ..MeshPart::default() });
         soup.face_parts.extend(std::iter::repeat_n(first_part, mesh.n_faces()));
     } else {
-        soup.parts.extend(mesh.parts().iter().map(|part| Part { model, ..part.clone() }));
+        soup.parts.extend(mesh.parts().iter().map(|part| MeshPart { model, ..part.clone() }));
         soup.face_parts.extend(mesh.face_parts().iter().map(|part| first_part + part));
     }
     Ok(())
@@ -134,11 +172,14 @@ mod tests {
 
     #[test]
     fn y_up_becomes_z_up() {
-        let arrangement = Arrangement { up_axis: UpAxis::Y, ..Arrangement::default() };
-        let models = vec![(triangle(dvec3(1.0, 2.0, 3.0)), Pose::default())];
-        let (mesh, _) = arrangement.arrange(models).expect("finite");
+        let upright = |up_axis, mesh| {
+            let models = vec![(mesh, Pose { up_axis, ..Pose::default() })];
+            Arrangement::default().arrange(models).expect("finite").0
+        };
+        let mesh = upright(UpAxis::Y, triangle(dvec3(1.0, 2.0, 3.0)));
         let expected = [dvec3(1.0, -3.0, 2.0), dvec3(2.0, -3.0, 2.0), dvec3(1.0, -3.0, 3.0)];
         assert_eq!(mesh.positions(), expected);
+        assert_eq!(upright(UpAxis::NegativeY, mesh), triangle(dvec3(1.0, 2.0, 3.0)));
     }
 
     #[test]
@@ -152,8 +193,12 @@ mod tests {
 
     #[test]
     fn each_model_has_a_place_of_its_own() {
-        let moved =
-            Pose { scale: 2.0, rotate_deg: dvec3(0.0, 0.0, 90.0), move_by: dvec3(10.0, 0.0, 0.0) };
+        let moved = Pose {
+            scale: 2.0,
+            rotate_deg: dvec3(0.0, 0.0, 90.0),
+            move_by: dvec3(10.0, 0.0, 0.0),
+            ..Pose::default()
+        };
         let models =
             vec![(triangle(DVec3::ZERO), Pose::default()), (triangle(dvec3(1.0, 0.0, 0.0)), moved)];
         let (mesh, _) = Arrangement::default().arrange(models).expect("finite");

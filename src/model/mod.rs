@@ -9,6 +9,10 @@ pub mod topology;
 
 pub mod triangulate;
 
+pub mod diagnosis;
+
+pub mod flush;
+
 pub mod intersections;
 
 pub mod bends;

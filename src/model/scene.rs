@@ -13,6 +13,7 @@
 use crate::camera::Camera;
 use crate::extent::Extent;
 use crate::model::bends::{Bend, bends};
+use crate::model::flush::{BoundaryPart, FlushEdges, flush_edges};
 use crate::model::intersections::Intersections;
 use crate::model::mesh::Mesh;
 use crate::model::topology::{EdgeUse, Topology};
@@ -41,6 +42,8 @@ pub enum LineSource {
     Bend(u32),
     /// A polyline of the model that borders no face: a number in [`Mesh::wires`].
     Wire(u32),
+    /// Part of a boundary edge: a number in [`Scene::boundary_parts`].
+    BoundaryPart(u32),
 }
 
 /// The cosine of the angle between the normals of two faces that meet at an edge, as a fraction.
@@ -69,11 +72,13 @@ pub struct Scene {
     triangle_faces: Vec<u32>,
     intersections: Intersections,
     bends: Vec<Bend>,
-    /// All lines that are not edges of faces: intersections, then bends, then wires.
+    /// All lines that are not whole edges of faces: intersections, then bends, then wires, then parts
+    /// of boundary edges.
     lines: Vec<SceneLine>,
     normals: OnceLock<Vec<DVec3>>,
     dihedrals: OnceLock<Vec<Dihedral>>,
     groups: OnceLock<Vec<u32>>,
+    flush_edges: FlushEdges,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
     points: Vec<DVec3>,
 }
@@ -127,7 +132,24 @@ impl Scene {
         );
         let wires = (0..).zip(self.mesh.wires());
         self.lines.extend(wires.map(|(k, &ends)| SceneLine { ends, source: LineSource::Wire(k) }));
+        let parts = (0..).zip(&self.flush_edges.parts);
+        self.lines.extend(
+            parts.map(|(k, part)| SceneLine {
+                ends: part.ends,
+                source: LineSource::BoundaryPart(k),
+            }),
+        );
         self
+    }
+
+    /// Also finds boundary edges beyond which a coplanar face goes on, as at T-junctions, so that they
+    /// count as edges within a face. Those that are flush in part are split.
+    /// Expected cost O(n log n) in boundary edges and triangles.
+    #[must_use]
+    pub fn with_flush_edges(mut self) -> Self {
+        self.flush_edges =
+            flush_edges(&self.mesh, &self.topology, &self.triangles, &self.triangle_faces);
+        self.with_lines()
     }
 
     /// The mesh.
@@ -158,6 +180,24 @@ impl Scene {
     /// Where bent faces are folded; nothing before [`with_bends`](Self::with_bends).
     pub fn bends(&self) -> &[Bend] {
         &self.bends
+    }
+
+    /// Whether a boundary edge is known to lie flush in coplanar faces from end to end.
+    /// O(log flush edges).
+    pub fn is_flush(&self, edge: u32) -> bool {
+        self.flush_edges.whole.binary_search(&edge).is_ok()
+    }
+
+    /// Parts of the boundary edges that lie flush in part; nothing before
+    /// [`with_flush_edges`](Self::with_flush_edges).
+    pub fn boundary_parts(&self) -> &[BoundaryPart] {
+        &self.flush_edges.parts
+    }
+
+    /// Whether the parts of an edge are lines of their own, in place of the whole.
+    /// O(log boundary parts).
+    pub fn is_split(&self, edge: u32) -> bool {
+        self.flush_edges.parts.binary_search_by_key(&edge, |part| part.edge).is_ok()
     }
 
     /// Whether a face is known to be bent. O(log bends).

@@ -1,4 +1,4 @@
-//! Why a model could not be read: what, where, and how to mend it, in one line.
+//! Why a model could not be read: what is wrong, where, and how to fix it, in one line.
 
 use std::fmt;
 
@@ -6,14 +6,14 @@ use thiserror::Error;
 
 use crate::model::mesh::MeshError;
 
-/// A model that cannot be read: the file, the line if the format has lines, and the fault.
+/// A model that cannot be read: the file, the line in text formats, and the fault.
 ///
-/// Displays as one line, `file:line: what; how to mend it`.
+/// Displays as one line, `file:line: what is wrong; how to fix it`.
 #[derive(Debug, Error)]
 pub struct ReadError {
     /// Name of the file as it was given.
     pub name: String,
-    /// Line in the file, counted from 1; `None` where there is no such place.
+    /// Line in the file, counted from 1; `None` where no line is known.
     pub line: Option<usize>,
     /// What is wrong.
     #[source]
@@ -31,7 +31,7 @@ impl fmt::Display for ReadError {
     }
 }
 
-/// Writes text with control characters (line ends among them) replaced by blanks.
+/// Writes text with control characters, line ends among them, replaced by blanks.
 pub(super) fn write_one_line(f: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
     text.chars().try_for_each(|c| fmt::Write::write_char(f, if c.is_control() { ' ' } else { c }))
 }
@@ -42,27 +42,34 @@ pub enum Fault {
     /// The operating system refused.
     #[error("cannot be read: {0}")]
     Io(#[from] std::io::Error),
-    /// Neither name nor content tell the format.
-    #[error(
-        "cannot tell the format from its name or content; \
-         if it is a model, give --input-format obj, stl, ply or off"
-    )]
+    /// Neither name nor content reveals the format.
+    #[error("cannot tell the format from its name or content")]
     UnknownFormat,
+    /// A web page in place of a model.
+    #[error("this is a web page, not a model; download the file itself")]
+    WebPage,
+    /// What Git Large File Storage leaves in place of a file.
+    #[error("this is a Git LFS pointer, not a model; fetch the file with `git lfs pull`")]
+    LfsPointer,
+    /// A STEP file, which holds curved surfaces.
+    #[error(
+        "STEP files are not read; make a GLB of it in FreeCAD, or in Python (pip install cascadio): \
+         cascadio.step_to_glb(\"part.step\", \"part.glb\", 0.05, 0.2)"
+    )]
+    Step,
     /// Zero bytes.
     #[error("the file is empty; export the model again")]
     Empty,
     /// Nothing that could be drawn is left.
-    #[error("{}", no_faces(*.vertices, *.lines, *.degenerate))]
+    #[error("{}", no_faces(*.vertices, *.degenerate))]
     NoFaces {
         /// Vertices that were read.
         vertices: usize,
-        /// Line records that were left out.
-        lines: usize,
         /// Faces that were left out for having fewer than three different corners.
         degenerate: usize,
     },
-    /// A text format holds bytes that are not text, and no face.
-    #[error("this is not {0} text; check the file, or say which format it is")]
+    /// A file in a text format holds bytes that are not text, and no face.
+    #[error("this is not {0} text; check the file, or give its format")]
     NotText(&'static str),
     /// A word that should be a number.
     #[error("`{0}` is not a decimal number; correct it or export the model again")]
@@ -102,7 +109,7 @@ pub enum Fault {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// The file ends before its time.
+    /// The file ends too early.
     #[error("the file ends early: {expected} expected, {found}; export or copy the model again")]
     Truncated {
         /// What should be there.
@@ -110,7 +117,7 @@ pub enum Fault {
         /// What is there.
         found: String,
     },
-    /// Another word than the format allows here.
+    /// A word that the format does not allow here.
     #[error("{expected} expected, `{found}` found; correct the line or export the model again")]
     Unexpected {
         /// What the format asks for.
@@ -123,31 +130,71 @@ pub enum Fault {
     Unsupported {
         /// What it is.
         what: &'static str,
-        /// How the model can be had otherwise.
+        /// What to do instead.
         remedy: &'static str,
     },
     /// The format is left out of this build.
     #[error(transparent)]
     FeatureOff(#[from] FeatureOff),
-    /// What a parsing library says.
+    /// A message of a parsing library.
     #[error("{0}; correct the file or export the model again")]
     Parser(String),
-    /// The faces are no mesh.
+    /// The faces do not make a mesh.
     #[error("{0}; export the model again")]
     Mesh(#[from] MeshError),
+    /// The JSON of a glTF file, or what it refers to, is wrong.
+    #[error("this is not valid glTF 2.0: {0}; export the model again")]
+    Gltf(String),
+    /// A glTF file demands an extension that is not supported; compression, mostly.
+    #[error(
+        "it requires the glTF extension {0}; write it without: \
+         gltf-transform copy model.glb plain.glb (npm install --global @gltf-transform/cli)"
+    )]
+    RequiredExtension(String),
+    /// A glTF buffer lies elsewhere than in the model's folder.
+    #[error(
+        "its buffer `{0}` is not in the model's folder, and no other place is read; \
+         put it there, or export the model as .glb"
+    )]
+    BufferElsewhere(String),
+    /// A glTF buffer is a file, but the model came without a folder, as from standard input.
+    #[error(
+        "its buffer `{0}` is a file of its own; give the model by its name, or export it as .glb"
+    )]
+    BufferWithoutFolder(String),
+    /// A glTF buffer's file cannot be read.
+    #[error(
+        "its buffer `{name}` cannot be read: {error}; put it there, or export the model as .glb"
+    )]
+    MissingBuffer {
+        /// The buffer as the file names it.
+        name: String,
+        /// What the operating system says.
+        #[source]
+        error: std::io::Error,
+    },
+    /// A 3MF archive, or the XML in it, is wrong.
+    #[error("this is not valid 3MF: {0}; export the model again")]
+    ThreeMf(String),
+    /// An archive that would unpack to far more than a model.
+    #[error("it unpacks to far more than a model of its size; export the model again")]
+    TooMuchUnpacked,
+    /// Nested or repeated references that would make far more of a model than its file holds.
+    #[error(
+        "it repeats its parts too often, or nests them too deeply; export the model in one piece"
+    )]
+    TooManyInstances,
 }
 
-fn no_faces(vertices: usize, lines: usize, degenerate: usize) -> String {
+fn no_faces(vertices: usize, degenerate: usize) -> String {
     let what = if degenerate > 0 {
         format!("all {degenerate} faces have fewer than three different corners")
-    } else if lines > 0 {
-        format!("{lines} line records only")
     } else if vertices > 0 {
         format!("{vertices} points only")
     } else {
         "no vertices either".to_owned()
     };
-    format!("no face to draw: {what}; export the model as a surface of polygons")
+    format!("no face or line to draw: {what}; export the model as a surface of polygons")
 }
 
 fn missing_vertex(index: &str, vertices: usize) -> String {
@@ -169,7 +216,7 @@ pub struct FeatureOff {
     pub feature: &'static str,
 }
 
-/// A fault and its line, before the name of the file is put to it.
+/// A fault and its line, before the name of the file is added.
 #[derive(Debug)]
 pub(super) struct Located {
     pub(super) line: Option<usize>,

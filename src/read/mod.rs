@@ -1,27 +1,33 @@
-//! Model files to meshes: OBJ, STL, PLY and OFF.
+//! Model files to meshes: OBJ, STL, PLY, OFF, glTF and 3MF.
 //!
 //! ```text
-//!  bytes ─► decode ─► obj │ stl │ ply │ off ─► PolygonSoup ─► Mesh::new ─► Model
+//!  bytes ─► decode ─► obj │ stl │ ply │ off │ gltf │ three_mf ─► PolygonSoup ─► Mesh::new ─► Model
 //! ```
 //!
 //! Positions are the doubles nearest to what the file says; single precision in binary files is
-//! widened, which is exact. Polygons stay whole. Colors, normals and texture coordinates are not
-//! looked at, so nothing wrong with them matters.
+//! widened, which is exact. Polygons stay whole. Polylines become wires. Texture coordinates are
+//! ignored, so errors in them do not matter.
 //!
-//! A reader refuses a file where geometry is lost (a bad or missing index, a number that is not
-//! finite, a wrong count, an early end) and where no face is left. What it merely does not know it
-//! skips with a [`Warning`]. Memory stays within a small multiple of the file's size, whatever
-//! counts a header claims.
+//! A reader refuses a file where geometry is lost (a bad or missing index, a number in use that is
+//! not finite, a wrong count, an early end) and where neither a face nor a wire is left. Records
+//! that it does not know are skipped with a [`Warning`]. Memory stays within a small multiple of the
+//! file's size, whatever counts a header claims.
 
 mod error;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod materials;
+mod mtl;
 mod obj;
 mod obj_filter;
 mod off;
+mod parts;
 #[cfg(feature = "ply")]
 mod ply;
 mod stl;
 mod text;
+#[cfg(feature = "3mf")]
+mod three_mf;
 mod warning;
 
 use std::io::Read;
@@ -29,12 +35,15 @@ use std::path::Path;
 
 pub use error::{Fault, FeatureOff, ReadError};
 pub use materials::{MaterialColors, material_colors, material_files};
+pub use mtl::{MaterialFile, read_materials};
 pub use warning::{Notice, Warning};
 
+use crate::model::arrange::UpAxis;
 use crate::model::mesh::{Mesh, PolygonSoup, Repairs};
 use error::Located;
+use parts::PartTable;
 
-/// The formats that can be read.
+/// Model formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ModelFormat {
     /// Wavefront OBJ, text.
@@ -45,26 +54,47 @@ pub enum ModelFormat {
     Ply,
     /// Object File Format, text.
     Off,
+    /// glTF 2.0, as JSON or as one binary file (GLB).
+    Gltf,
+    /// 3D Manufacturing Format, the ZIP archive that slicers save.
+    ThreeMf,
 }
 
 impl ModelFormat {
-    /// The format that a file name's extension stands for, in any letter case.
+    /// The format of a file name's extension, in any letter case.
     pub fn from_name(path: &Path) -> Option<Self> {
         Self::from_word(path.extension()?.to_str()?)
     }
 
-    /// The format of this name: `obj`, `stl`, `ply` or `off`, in any letter case.
+    /// The format of this name: `obj`, `stl`, `ply`, `off`, `gltf`, `glb` or `3mf`, in any letter
+    /// case.
     pub fn from_word(word: &str) -> Option<Self> {
         match word.to_ascii_lowercase().as_str() {
             "obj" => Some(Self::Obj),
             "stl" => Some(Self::Stl),
             "ply" => Some(Self::Ply),
             "off" => Some(Self::Off),
+            "gltf" | "glb" => Some(Self::Gltf),
+            "3mf" => Some(Self::ThreeMf),
             _ => None,
         }
     }
 
-    /// The format that the first bytes look like.
+    /// The axis that points up in a mesh as it was read, if `in_file` does in its file.
+    ///
+    /// Only glTF defines that axis, y, and is turned to z-up when it is read. Without `in_file` the
+    /// format decides: all meshes are then z-up.
+    pub fn up_axis_as_read(self, in_file: Option<UpAxis>) -> UpAxis {
+        match (self, in_file) {
+            (_, None) | (Self::Gltf, Some(UpAxis::Y)) => UpAxis::Z,
+            (Self::Gltf, Some(UpAxis::Z)) => UpAxis::NegativeY,
+            (Self::Gltf, Some(UpAxis::NegativeY)) => UpAxis::NegativeZ,
+            (Self::Gltf, Some(UpAxis::NegativeZ)) => UpAxis::Y,
+            (_, Some(axis)) => axis,
+        }
+    }
+
+    /// The format that the content suggests.
     pub fn from_content(bytes: &[u8]) -> Option<Self> {
         let text = text::decode(bytes);
         if text.starts_with(b"ply\n") || text.starts_with(b"ply\r") {
@@ -76,8 +106,22 @@ impl ModelFormat {
         } else if obj_filter::looks_like(&text) {
             Some(Self::Obj)
         } else {
-            None
+            Self::from_container(bytes)
         }
+    }
+
+    /// The format of a file that is not plain text.
+    fn from_container(bytes: &[u8]) -> Option<Self> {
+        #[cfg(feature = "gltf")]
+        if gltf::looks_like(bytes) {
+            return Some(Self::Gltf);
+        }
+        #[cfg(feature = "3mf")]
+        if three_mf::looks_like(bytes) {
+            return Some(Self::ThreeMf);
+        }
+        let _ = bytes;
+        None
     }
 }
 
@@ -88,16 +132,17 @@ pub struct Model {
     pub mesh: Mesh,
     /// The format that was read.
     pub format: ModelFormat,
-    /// What was welded and dropped.
+    /// What was merged and left out.
     pub repairs: Repairs,
-    /// What was skipped or is otherwise worth telling; a few at most.
+    /// Millimeters in a model unit, where the format says so: 1000 in glTF, as written in 3MF.
+    pub unit_mm: Option<f64>,
+    /// What was skipped, and other remarks; a few at most.
     pub warnings: Vec<Warning>,
 }
 
 /// Reads a model file; `-` is standard input.
 ///
-/// Without `format`, the name's extension says what it is, and where that says nothing, the
-/// content does.
+/// Without `format`, the extension decides, or else the content.
 ///
 /// # Errors
 /// The file cannot be opened or read, or [`read_bytes`] fails.
@@ -110,8 +155,9 @@ pub fn read_file(path: &Path, format: Option<ModelFormat>) -> Result<Model, Read
     } else {
         std::fs::read(path)
     };
+    let folder = if is_stdin { None } else { Some(path.parent().unwrap_or(Path::new(""))) };
     match bytes {
-        Ok(bytes) => read_bytes(&name, &bytes, format),
+        Ok(bytes) => read_named(&name, &bytes, format, folder),
         Err(error) => Err(ReadError { name, line: None, fault: Fault::Io(error) }),
     }
 }
@@ -119,36 +165,41 @@ pub fn read_file(path: &Path, format: Option<ModelFormat>) -> Result<Model, Read
 /// Reads a model from memory; `name` is for messages, and for its extension.
 ///
 /// # Errors
-/// The format is unknown, the content is at fault (see [`Fault`]), or no face is left.
+/// The format is unknown, the content is faulty (see [`Fault`]), or neither a face nor a wire is left.
 pub fn read_bytes(
     name: &str,
     bytes: &[u8],
     format: Option<ModelFormat>,
 ) -> Result<Model, ReadError> {
-    read_draft(bytes, format.or_else(|| ModelFormat::from_name(Path::new(name)))).map_or_else(
-        |Located { line, fault }| Err(ReadError { name: name.to_owned(), line, fault }),
-        |(format, mesh, repairs, notices)| {
-            let warnings = notices
-                .into_iter()
-                .map(|notice| Warning { name: name.to_owned(), notice })
-                .collect();
-            Ok(Model { mesh, format, repairs, warnings })
-        },
-    )
+    read_named(name, bytes, format, None)
 }
 
-/// What a reader hands over.
+/// Reads a model; files that it refers to are looked for in `folder`.
+fn read_named(
+    name: &str,
+    bytes: &[u8],
+    format: Option<ModelFormat>,
+    folder: Option<&Path>,
+) -> Result<Model, ReadError> {
+    let path = Path::new(name);
+    read_model(path, bytes, format.or_else(|| ModelFormat::from_name(path)), folder)
+        .map_err(|Located { line, fault }| ReadError { name: name.to_owned(), line, fault })
+}
+
+/// What a reader returns.
 #[derive(Debug, Default)]
 struct Draft {
     soup: PolygonSoup,
     notices: Vec<Notice>,
+    /// Vertices of the soup with a coordinate that is not finite: index, line, fault.
+    unsound_vertices: Vec<(usize, Option<usize>, Fault)>,
+    /// Millimeters in a model unit, if the format says so.
+    unit_mm: Option<f64>,
     /// Faces of fewer than three corners that are not in the soup, and the line of the first.
     degenerate_faces: usize,
     first_degenerate_line: Option<usize>,
-    /// Vertices that are not in the soup because no face uses them.
+    /// Vertices that are not in the soup because nothing uses them.
     unused_vertices: usize,
-    /// Line records that were left out.
-    n_lines: usize,
 }
 
 impl Draft {
@@ -159,17 +210,51 @@ impl Draft {
         }
         self.degenerate_faces += 1;
     }
+
+    /// Notes that the next vertex of the soup is not finite, which matters only if it is used.
+    fn leave_unsound_vertex(&mut self, line: Option<usize>, fault: Fault) {
+        self.unsound_vertices.push((self.soup.positions.len(), line, fault));
+    }
+
+    /// Completes the parts that the faces refer to.
+    fn set_parts(&mut self, parts: PartTable) {
+        self.soup.parts = parts.into_parts();
+        if self.soup.parts.is_empty() {
+            self.soup.face_parts.clear();
+        }
+    }
+
+    /// Refuses a vertex in use that is not finite.
+    fn check_vertices(&mut self) -> Result<(), Located> {
+        if self.unsound_vertices.is_empty() {
+            return Ok(());
+        }
+        let mut is_used = vec![false; self.soup.positions.len()];
+        for &vertex in self.soup.corners.iter().chain(self.soup.wires.as_flattened()) {
+            if let Some(is_used) = is_used.get_mut(vertex as usize) {
+                *is_used = true;
+            }
+        }
+        let unsound = std::mem::take(&mut self.unsound_vertices);
+        match unsound.into_iter().find(|(vertex, ..)| is_used[*vertex]) {
+            Some((_, line, fault)) => Err(Located { line, fault }),
+            None => Ok(()),
+        }
+    }
 }
 
-fn read_draft(
+fn read_model(
+    path: &Path,
     bytes: &[u8],
     format: Option<ModelFormat>,
-) -> Result<(ModelFormat, Mesh, Repairs, Vec<Notice>), Located> {
+    folder: Option<&Path>,
+) -> Result<Model, Located> {
     if bytes.is_empty() {
         return Err(Fault::Empty.into());
     }
+    refuse_other_files(path, bytes, format)?;
     let format = format.or_else(|| ModelFormat::from_content(bytes)).ok_or(Fault::UnknownFormat)?;
-    let draft = match format {
+    let mut draft = match format {
         ModelFormat::Obj => obj::read(&text::decode(bytes)),
         ModelFormat::Stl => stl::read(bytes),
         #[cfg(feature = "ply")]
@@ -177,14 +262,27 @@ fn read_draft(
         #[cfg(not(feature = "ply"))]
         ModelFormat::Ply => Err(Fault::from(FeatureOff { format: "PLY", feature: "ply" }).into()),
         ModelFormat::Off => off::read(&text::decode(bytes)),
+        #[cfg(feature = "gltf")]
+        ModelFormat::Gltf => gltf::read(bytes, folder),
+        #[cfg(not(feature = "gltf"))]
+        ModelFormat::Gltf => {
+            Err(Fault::from(FeatureOff { format: "glTF", feature: "gltf" }).into())
+        }
+        #[cfg(feature = "3mf")]
+        ModelFormat::ThreeMf => three_mf::read(bytes),
+        #[cfg(not(feature = "3mf"))]
+        ModelFormat::ThreeMf => {
+            Err(Fault::from(FeatureOff { format: "3MF", feature: "3mf" }).into())
+        }
     }?;
+    draft.check_vertices()?;
     let vertices = draft.soup.positions.len() + draft.unused_vertices;
     let (mesh, mut repairs) = Mesh::new(draft.soup).map_err(Fault::from)?;
     repairs.degenerate_faces += draft.degenerate_faces;
     repairs.unused_vertices += draft.unused_vertices;
-    if mesh.n_faces() == 0 {
+    if mesh.n_faces() == 0 && mesh.wires().is_empty() {
         let degenerate = repairs.degenerate_faces;
-        return Err(Fault::NoFaces { vertices, lines: draft.n_lines, degenerate }.into());
+        return Err(Fault::NoFaces { vertices, degenerate }.into());
     }
     let mut notices = draft.notices;
     if repairs.degenerate_faces > 0 {
@@ -194,5 +292,30 @@ fn read_draft(
             .filter(|_| repairs.degenerate_faces == draft.degenerate_faces);
         notices.push(Notice::DegenerateFaces { count: repairs.degenerate_faces, first_line });
     }
-    Ok((format, mesh, repairs, notices))
+    let name = path.display().to_string();
+    let warnings = notices.into_iter().map(|notice| Warning { name: name.clone(), notice });
+    let warnings = warnings.collect();
+    Ok(Model { mesh, format, repairs, unit_mm: draft.unit_mm, warnings })
+}
+
+/// Refuses files that are given by mistake: web pages, Git LFS pointers, STEP files.
+fn refuse_other_files(path: &Path, bytes: &[u8], format: Option<ModelFormat>) -> Result<(), Fault> {
+    let text = text::decode(&bytes[..bytes.len().min(1 << 12)]);
+    let text = text.trim_ascii_start();
+    let begins = |start: &[u8]| {
+        text.get(..start.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(start))
+    };
+    let is_step_name = || {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        extension.is_some_and(|e| ["step", "stp"].iter().any(|name| e.eq_ignore_ascii_case(name)))
+    };
+    if begins(b"<!doctype html") || begins(b"<html") {
+        Err(Fault::WebPage)
+    } else if begins(b"version https://git-lfs") {
+        Err(Fault::LfsPointer)
+    } else if begins(b"ISO-10303-21") || format.is_none() && is_step_name() {
+        Err(Fault::Step)
+    } else {
+        Ok(())
+    }
 }

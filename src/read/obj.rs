@@ -10,7 +10,7 @@ use crate::model::mesh::{MeshError, PolygonSoup};
 /// Reads decoded OBJ text.
 pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     let filtered = filter(bytes)?;
-    if filtered.n_faces == 0 && looks_binary(bytes) {
+    if filtered.n_faces == 0 && filtered.n_segments == 0 && looks_binary(bytes) {
         return Err(Fault::NotText("OBJ").into());
     }
     if filtered.n_vertices.max(filtered.n_corners) >= u32::MAX as usize {
@@ -22,21 +22,30 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
         soup.face_parts.extend(std::iter::repeat_n(part, end - first));
     }
     soup.parts = filtered.parts;
-    Ok(Draft {
+    let mut draft = Draft {
         unused_vertices: filtered.n_vertices.saturating_sub(soup.positions.len()),
-        soup,
         notices: filtered.notices,
         degenerate_faces: filtered.n_degenerate,
         first_degenerate_line: filtered.first_degenerate_line,
-        n_lines: filtered.n_lines,
-    })
+        ..Draft::default()
+    };
+    // Those that come back are in use: the filter gave each its number in place of a coordinate.
+    let unsound = soup.positions.iter().find(|position| !position.is_finite());
+    if let Some((line, fault)) =
+        unsound.and_then(|position| filtered.unsound.into_iter().nth(position.y as usize))
+    {
+        return Err(Located::at(line, fault));
+    }
+    draft.soup = soup;
+    Ok(draft)
 }
 
 fn looks_binary(bytes: &[u8]) -> bool {
     bytes.iter().any(|&byte| byte < b' ' && !text::is_blank(byte) && !text::is_line_end(byte))
 }
 
-/// Lets tobj read the reduced text: one object, its vertices in order of their first use.
+/// Lets tobj read the reduced text: one object, its vertices in order of their first use. Faces of two
+/// corners are segments.
 fn parse(filtered: &Filtered) -> Result<PolygonSoup, Fault> {
     let options = tobj::LoadOptions::default();
     let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
@@ -47,19 +56,22 @@ fn parse(filtered: &Filtered) -> Result<PolygonSoup, Fault> {
         let offset = soup.positions.len() as u32;
         let (points, _) = mesh.positions.as_chunks::<3>();
         soup.positions.extend(points.iter().map(|&point| DVec3::from_array(point)));
-        if let Some(vertex) = soup.positions.iter().position(|p| !p.is_finite()) {
-            return Err(Fault::ElementNotFinite { element: "vertex", index: vertex + 1 });
-        }
-        let mut end = soup.corners.len() as u32;
-        let n_faces = mesh.indices.len() / 3;
-        soup.corners.extend(mesh.indices.into_iter().map(|index| index + offset));
+        let mut corners = mesh.indices.into_iter().map(|index| index + offset);
         if mesh.face_arities.is_empty() {
-            soup.face_starts.extend((1..=n_faces as u32).map(|face| end + 3 * face));
-        } else {
-            soup.face_starts.extend(mesh.face_arities.iter().map(|arity| {
-                end += arity;
-                end
-            }));
+            soup.corners.extend(corners);
+            let n_corners = soup.corners.len() as u32;
+            soup.face_starts.extend((1..=n_corners / 3).map(|face| 3 * face));
+            continue;
+        }
+        for arity in mesh.face_arities {
+            if arity == 2 {
+                if let (Some(from), Some(to)) = (corners.next(), corners.next()) {
+                    soup.wires.push([from, to]);
+                }
+            } else {
+                soup.corners.extend(corners.by_ref().take(arity as usize));
+                soup.face_starts.push(soup.corners.len() as u32);
+            }
         }
     }
     Ok(soup)

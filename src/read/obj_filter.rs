@@ -1,21 +1,26 @@
-//! OBJ text reduced to what tobj reads well: `v` with three numbers and `f` with vertex numbers.
+//! OBJ text reduced to what tobj reads reliably: `v` with three numbers and `f` with vertex numbers.
 //!
-//! tobj itself stumbles over byte order marks, comments behind a record, continued lines, colors
-//! on some vertices only, and numbers of normals or texture coordinates that do not exist; it
-//! takes `l` records for faces and says no line. This filter, one pass over the bytes into one
-//! buffer no longer than the file, leaves it nothing of that. Names of groups and materials are
-//! kept aside, so that tobj sees a single object and shared vertices stay shared.
+//! tobj itself fails on byte order marks, comments after a record, continued lines, colors
+//! on some vertices only, and numbers of normals or texture coordinates that do not exist. It
+//! reports no line, and some input makes it panic. This filter, one pass over the bytes into one
+//! buffer, leaves only vertices and faces that are known to be valid. Names of groups and materials
+//! are kept separately, so tobj sees a single object and shared vertices stay shared.
+//!
+//! Polylines (`l`) become segments at the end of the text, as faces of two corners. A vertex that is
+//! not finite becomes `v NaN N 0`, where N says which one: tobj drops what no face uses, so only
+//! those in use come back.
 //!
 //! A comment ends at its line's end, *before* lines that end in a backslash are joined.
 
-use rustc_hash::FxHashMap;
+use std::io::Write as _;
 
 use super::error::{Fault, Located};
+use super::parts::PartTable;
 use super::text::{after_line_end, is_blank, is_line_end, name, number, shown};
 use super::warning::Notice;
-use crate::model::mesh::Part;
+use crate::model::mesh::MeshPart;
 
-/// Records that concern neither shape nor names: skipped without a word.
+/// Records that affect neither shape nor names: skipped silently.
 const IRRELEVANT: [&[u8]; 16] = [
     b"vn",
     b"vt",
@@ -35,26 +40,29 @@ const IRRELEVANT: [&[u8]; 16] = [
     b"end",
 ];
 
-/// Unknown records that are told apart; the kinds after these are only counted together.
+/// Kinds of unknown records that are reported one by one; further kinds are counted together.
 const MOST_UNKNOWN_KINDS: usize = 6;
 
-/// An OBJ file without all that tobj need not see.
+/// An OBJ file reduced to what tobj needs.
 #[derive(Debug, Default)]
 pub(super) struct Filtered {
-    /// `v x y z` and `f i j k …` lines, ASCII; all numbers are decimal, finite and in range.
+    /// `v x y z`, then or between them `f i j k …`, at last `f i j` for segments: ASCII, and all
+    /// numbers are decimal and in range.
     pub(super) text: Vec<u8>,
+    /// Vertices that are not finite: line and fault of each.
+    pub(super) unsound: Vec<(usize, Fault)>,
+    /// Segments of polylines.
+    pub(super) n_segments: usize,
     pub(super) n_vertices: usize,
     pub(super) n_faces: usize,
     pub(super) n_corners: usize,
     /// Groups and materials, in order of their first face; empty when the file names none.
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<MeshPart>,
     /// The first face of each run of faces that have the same part, and that part.
     pub(super) runs: Vec<(usize, u32)>,
     /// Faces of one or two corners, left out, and the line of the first.
     pub(super) n_degenerate: usize,
     pub(super) first_degenerate_line: Option<usize>,
-    /// `l` and `p` records.
-    pub(super) n_lines: usize,
     pub(super) notices: Vec<Notice>,
 }
 
@@ -81,6 +89,7 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     let mut naming = Naming::default();
     let mut skipped = Skipped::default();
     let mut largest = Largest::default();
+    let mut segments = Vec::new();
     while !records.at_end() {
         if copy_plain_vertex(&mut records, &mut out)
             || copy_plain_face(&mut records, &mut out, &mut largest, &mut naming)
@@ -95,9 +104,10 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
             Some(b"f") => copy_face(&mut records, &mut out, &mut largest, &mut naming)?,
             Some(b"o" | b"g") => naming.set_group(records.words_of_name()),
             Some(b"usemtl") => naming.set_material(records.words_of_name()),
-            Some(b"l" | b"p") => {
-                skipped.first_line_record.get_or_insert(line);
-                out.n_lines += 1;
+            Some(b"l") => read_polyline(&mut records, &mut out, &mut largest, &mut segments)?,
+            Some(b"p") => {
+                skipped.first_point_record.get_or_insert(line);
+                skipped.n_points += 1;
             }
             Some(keyword) if IRRELEVANT.contains(&keyword) => {}
             Some(keyword) => skipped.note_unknown(keyword, line),
@@ -112,11 +122,18 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
         ));
     }
     if naming.any {
-        out.parts = naming.parts;
-    } else {
+        out.parts = naming.table.into_parts();
+    }
+    if out.parts.is_empty() {
         out.runs.clear();
     }
-    skipped.report(out.n_lines, &mut out.notices);
+    out.n_segments = segments.len();
+    out.n_corners += 2 * segments.len();
+    for [from, to] in segments {
+        // Writing to memory cannot fail.
+        let _ = writeln!(out.text, "f {from} {to}");
+    }
+    skipped.report(&mut out.notices);
     Ok(out)
 }
 
@@ -233,17 +250,31 @@ fn finish_face(n_corners: usize, out: &mut Filtered, naming: &mut Naming) {
 }
 
 fn copy_vertex(records: &mut Records<'_>, out: &mut Filtered) -> Result<(), Located> {
+    let (line, start) = (records.line, out.text.len());
+    let mut not_finite = None;
     out.text.push(b'v');
     for found in 0..3 {
         let Some(word) = records.word(false) else {
             let fault = Fault::TooFewNumbers { record: "vertex", needed: 3, found };
             return Err(Located::at(records.line, fault));
         };
-        if !is_surely_finite(word) {
-            number(word).map_err(|fault| Located::at(records.line, fault))?;
+        if let Some(word) = records.rest_of_not_finite(word) {
+            not_finite.get_or_insert(Fault::NotFinite(shown(word)));
+        } else if !is_surely_finite(word) {
+            match number(word) {
+                Err(fault @ Fault::NotFinite(_)) => drop(not_finite.get_or_insert(fault)),
+                Err(fault) => return Err(Located::at(records.line, fault)),
+                Ok(_) => {}
+            }
         }
         out.text.push(b' ');
         out.text.extend_from_slice(word);
+    }
+    if let Some(fault) = not_finite {
+        out.text.truncate(start);
+        // Writing to memory cannot fail.
+        let _ = write!(out.text, "v NaN {} 0", out.unsound.len());
+        out.unsound.push((line, fault));
     }
     out.text.push(b'\n');
     out.n_vertices += 1;
@@ -286,34 +317,10 @@ fn copy_face(
     let mut n_corners = 0;
     out.text.push(b'f');
     while let Some(word) = records.word(false) {
+        read_index(records, word, out.n_vertices, largest)?;
         let length = word.iter().position(|&byte| byte == b'/').unwrap_or(word.len());
-        let position = &word[..length];
-        let (is_relative, digits) = match position {
-            [b'-', digits @ ..] => (true, digits),
-            [b'+', digits @ ..] => (false, digits),
-            digits => (false, digits),
-        };
-        let fail = |fault| Err(Located::at(records.line, fault));
-        if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
-            return fail(Fault::BadIndex(shown(word)));
-        }
-        let index = digits.iter().fold(0_u64, |value, digit| {
-            value.saturating_mul(10).saturating_add(u64::from(digit - b'0'))
-        });
-        if index == 0 {
-            return fail(Fault::ZeroIndex);
-        }
-        if is_relative && index > out.n_vertices as u64 {
-            let index = shown(position);
-            return fail(Fault::MissingVertex { index, vertices: out.n_vertices });
-        }
-        // Faces may come before their vertices, so a number is checked when all are known.
-        if !is_relative && index > largest.index {
-            let begin = records.at - word.len();
-            *largest = Largest { index, line: records.line, word: (begin, begin + length) };
-        }
         out.text.push(b' ');
-        out.text.extend_from_slice(position);
+        out.text.extend_from_slice(&word[..length]);
         n_corners += 1;
     }
     if n_corners < 3 {
@@ -326,46 +333,93 @@ fn copy_face(
     Ok(())
 }
 
+/// Reads an `l` record into segments of vertex numbers counted from 1.
+fn read_polyline(
+    records: &mut Records<'_>,
+    out: &mut Filtered,
+    largest: &mut Largest,
+    segments: &mut Vec<[u64; 2]>,
+) -> Result<(), Located> {
+    let mut before = None;
+    while let Some(word) = records.word(false) {
+        let vertex = read_index(records, word, out.n_vertices, largest)?;
+        if let Some(before) = before {
+            segments.push([before, vertex]);
+        }
+        before = Some(vertex);
+    }
+    Ok(())
+}
+
+/// The vertex number, counted from 1, that a word like `-1/2/3` begins with.
+fn read_index(
+    records: &Records<'_>,
+    word: &[u8],
+    n_vertices: usize,
+    largest: &mut Largest,
+) -> Result<u64, Located> {
+    let length = word.iter().position(|&byte| byte == b'/').unwrap_or(word.len());
+    let position = &word[..length];
+    let (is_relative, digits) = match position {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] => (false, digits),
+        digits => (false, digits),
+    };
+    let fail = |fault| Err(Located::at(records.line, fault));
+    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
+        return fail(Fault::BadIndex(shown(word)));
+    }
+    let index = digits.iter().fold(0_u64, |value, digit| {
+        value.saturating_mul(10).saturating_add(u64::from(digit - b'0'))
+    });
+    if index == 0 {
+        return fail(Fault::ZeroIndex);
+    }
+    if is_relative {
+        return match (n_vertices as u64 + 1).checked_sub(index) {
+            Some(vertex) if vertex > 0 => Ok(vertex),
+            _ => fail(Fault::MissingVertex { index: shown(position), vertices: n_vertices }),
+        };
+    }
+    // Faces may come before their vertices, so a number is checked when all are known.
+    if index > largest.index {
+        let begin = records.at - word.len();
+        *largest = Largest { index, line: records.line, word: (begin, begin + length) };
+    }
+    Ok(index)
+}
+
 /// The group and material in force, and all parts so far.
 #[derive(Debug, Default)]
 struct Naming {
-    current: Part,
-    /// The current part's place in `parts`, once a face needed it.
-    place: Option<u32>,
-    parts: Vec<Part>,
-    places: FxHashMap<Part, u32>,
+    current: MeshPart,
+    /// The current part's index, once a face needed it.
+    index: Option<u32>,
+    table: PartTable,
     any: bool,
 }
 
 impl Naming {
     fn set_group(&mut self, group: String) {
         self.current.group = group;
-        (self.place, self.any) = (None, true);
+        (self.index, self.any) = (None, true);
     }
 
     fn set_material(&mut self, material: String) {
         self.current.material = material;
-        (self.place, self.any) = (None, true);
+        (self.index, self.any) = (None, true);
     }
 
     fn part(&mut self) -> u32 {
-        if let Some(place) = self.place {
-            return place;
-        }
-        let next = self.parts.len() as u32;
-        let place = *self.places.entry(self.current.clone()).or_insert(next);
-        if place == next {
-            self.parts.push(self.current.clone());
-        }
-        self.place = Some(place);
-        place
+        *self.index.get_or_insert_with(|| self.table.index(&self.current))
     }
 }
 
 /// Records that were skipped and deserve a word.
 #[derive(Debug, Default)]
 struct Skipped {
-    first_line_record: Option<usize>,
+    n_points: usize,
+    first_point_record: Option<usize>,
     /// Keyword, count, first line.
     kinds: Vec<(Vec<u8>, usize, usize)>,
     n_others: usize,
@@ -382,12 +436,10 @@ impl Skipped {
         }
     }
 
-    fn report(self, n_lines: usize, notices: &mut Vec<Notice>) {
-        if n_lines > 0 {
-            notices.push(Notice::LinesAndPoints {
-                count: n_lines,
-                first_line: self.first_line_record,
-            });
+    fn report(self, notices: &mut Vec<Notice>) {
+        if self.n_points > 0 {
+            let first_line = self.first_point_record;
+            notices.push(Notice::Points { count: self.n_points, first_line });
         }
         notices.extend(self.kinds.into_iter().map(|(keyword, count, first_line)| {
             Notice::UnknownRecord { keyword: shown(&keyword), count, first_line }
@@ -443,6 +495,23 @@ impl<'a> Records<'a> {
             }
             self.at += 1;
         }
+        Some(&self.bytes[start..self.at])
+    }
+
+    /// The whole of a number like `1.#IND` or `-1.#INF`, as some programs write what is not finite,
+    /// when `word` is what stands before the `#` of one; then the number is passed.
+    fn rest_of_not_finite(&mut self, word: &[u8]) -> Option<&'a [u8]> {
+        let rest = &self.bytes[self.at..];
+        let is_spelled = [&b"#IND"[..], b"#INF", b"#QNAN", b"#SNAN"].iter().any(|spelling| {
+            rest.get(..spelling.len()).is_some_and(|start| start.eq_ignore_ascii_case(spelling))
+        });
+        if !is_spelled {
+            return None;
+        }
+        let start = self.at - word.len();
+        let ends = |&byte: &u8| is_blank(byte) || is_line_end(byte);
+        let length = rest.iter().position(ends).unwrap_or(rest.len());
+        self.at = start + word.len() + length;
         Some(&self.bytes[start..self.at])
     }
 

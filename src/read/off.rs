@@ -1,54 +1,70 @@
 //! OFF, the text format of Geomview: `OFF`, counts, one vertex a line, one face a line.
 //!
-//! No crate for this format was found in the registry lists at hand; mesh toolkits that know it
-//! bring their own mesh types and single precision.
+//! There is no crate for this format alone; mesh toolkits that read it bring their own mesh types and
+//! single precision.
 //!
-//! Prefixes (`C`, `N`, `ST`: colors, normals, texture coordinates) only add numbers behind the
-//! position, which are skipped, as are the colors behind a face.
+//! Prefixes (`C`, `N`, `ST`: colors, normals, texture coordinates) add numbers after the position.
+//! Colors count, those after the corners of a face before those of its vertices: whole numbers from 0
+//! to 255, or decimal fractions from 0 to 1. A single whole number is an index into a color map that
+//! is not part of the file, so it is ignored.
 
 use glam::DVec3;
 
 use super::Draft;
 use super::error::{Fault, Located};
+use super::parts::{PartTable, color_of_parts, mean_color};
 use super::text::{Words, number, shown};
 use super::warning::Notice;
 use crate::model::mesh::MeshError;
 
-/// Whether the first word of a text is a keyword of the format.
+/// Whether the first word of a text is a keyword of the format, perhaps with a count stuck to it.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
-    Words::new(bytes, Some(b'#')).next().is_some_and(|word| {
-        word.ends_with(b"OFF") && word[..word.len() - 3].iter().all(|c| b"STCN4n".contains(c))
-    })
+    Words::new(bytes, Some(b'#')).next().and_then(keyword).is_some()
+}
+
+/// The prefix of a word like `COFF` or `off8`, and what follows it.
+fn keyword(word: &[u8]) -> Option<(&[u8], &[u8])> {
+    let at = word.windows(3).position(|window| window.eq_ignore_ascii_case(b"OFF"))?;
+    let (prefix, rest) = (&word[..at], &word[at + 3..]);
+    let is_keyword =
+        prefix.iter().all(|c| b"STCN4nstc".contains(c)) && rest.iter().all(|c| c.is_ascii_digit());
+    is_keyword.then_some((prefix, rest))
 }
 
 /// Reads decoded text.
 pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     let mut words = Words::new(bytes, Some(b'#'));
-    read_keyword(bytes, &mut words)?;
-    let n_vertices = read_count(&mut words, "the number of vertices")?;
-    let n_faces = read_count(&mut words, "the number of faces")?;
-    words.skip_line();
-
+    let header = read_header(&mut words)?;
     let mut draft = Draft::default();
-    for vertex in 0..n_vertices {
-        let first = first_on_line(&mut words, "vertices", n_vertices, vertex)?;
-        let mut point = [0.0; 3];
-        for (i, coordinate) in point.iter_mut().enumerate() {
-            let word = if i == 0 { Some(first) } else { words.next_on_line() };
-            let too_few = Fault::TooFewNumbers { record: "vertex", needed: 3, found: i };
-            *coordinate = word
-                .ok_or(too_few)
-                .and_then(number)
-                .map_err(|fault| Located::at(words.line(), fault))?;
+    let mut vertex_colors = Vec::new();
+    for vertex in 0..header.n_vertices {
+        let first = first_on_line(&mut words, "vertices", header.n_vertices, vertex)?;
+        read_vertex(&mut words, first, &mut draft).map_err(|f| Located::at(words.line(), f))?;
+        if header.has_vertex_colors {
+            for _ in 0..header.n_between {
+                words.next_on_line();
+            }
+            vertex_colors.push(read_color(&mut words));
         }
-        draft.soup.positions.push(DVec3::from_array(point));
         words.skip_line();
     }
-    for face in 0..n_faces {
-        let first = first_on_line(&mut words, "faces", n_faces, face)?;
+    let mut parts = PartTable::default();
+    for face in 0..header.n_faces {
+        let first = first_on_line(&mut words, "faces", header.n_faces, face)?;
+        let start = draft.soup.corners.len();
         read_face(&mut words, first, &mut draft).map_err(|f| Located::at(words.line(), f))?;
+        let corners = draft.soup.corners[start..].iter();
+        if corners.len() > 0 {
+            let color = read_color(&mut words).or_else(|| {
+                mean_color(
+                    corners.filter_map(|&v| vertex_colors.get(v as usize).copied().flatten()),
+                )
+            });
+            draft.soup.face_parts.push(parts.index_of_color(color));
+        }
         words.skip_line();
     }
+    draft.set_parts(parts);
     let start = words.clone();
     if words.next().is_some() {
         draft.notices.push(Notice::TrailingBytes { count: start.rest().trim_ascii().len() });
@@ -56,34 +72,100 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     Ok(draft)
 }
 
-/// Reads the keyword, which may be missing, and refuses the variants that mean other numbers.
-fn read_keyword(bytes: &[u8], words: &mut Words<'_>) -> Result<(), Located> {
+/// What the first lines say.
+struct OffHeader {
+    n_vertices: u64,
+    n_faces: u64,
+    has_vertex_colors: bool,
+    /// Numbers between a vertex's position and its color.
+    n_between: usize,
+}
+
+/// Reads the keyword, which may be missing, and the counts; refuses variants that mean other numbers.
+fn read_header(words: &mut Words<'_>) -> Result<OffHeader, Located> {
     let start = words.clone();
     let word = words.next().unwrap_or_default();
-    if !looks_like(bytes) {
+    let Some((prefix, stuck_count)) = keyword(word) else {
         *words = start;
-        return if word.first().is_some_and(u8::is_ascii_digit) {
-            Ok(())
-        } else {
-            let found = shown(word);
-            Err(Located::at(1, Fault::Unexpected { expected: "the word `OFF`", found }))
-        };
-    }
+        if word.first().is_some_and(u8::is_ascii_digit) {
+            return read_counts(words, None, b"");
+        }
+        let fault = Fault::Unexpected { expected: "the word `OFF`", found: shown(word) };
+        return Err(Located::at(1, fault));
+    };
     let after_keyword = words.clone();
-    let what = if words.next_on_line().is_some_and(|word| word.eq_ignore_ascii_case(b"BINARY")) {
+    let is_binary = words.next_on_line().is_some_and(|word| word.eq_ignore_ascii_case(b"BINARY"));
+    *words = after_keyword;
+    let what = if is_binary {
         "binary OFF"
-    } else if word.iter().any(|c| b"4n".contains(c)) {
+    } else if prefix.iter().any(|c| b"4n".contains(c)) {
         "OFF with four or more coordinates a vertex"
     } else {
-        *words = after_keyword;
-        return Ok(());
+        let stuck_count = (!stuck_count.is_empty()).then_some(stuck_count);
+        return read_counts(words, stuck_count, prefix);
     };
     let remedy = "export the model as OFF text with three coordinates a vertex, or as PLY";
     Err(Located::at(words.line(), Fault::Unsupported { what, remedy }))
 }
 
+fn read_counts(
+    words: &mut Words<'_>,
+    n_vertices: Option<&[u8]>,
+    prefix: &[u8],
+) -> Result<OffHeader, Located> {
+    let n_vertices = match n_vertices {
+        Some(word) => count(words, word, "the number of vertices")?,
+        None => read_count(words, "the number of vertices")?,
+    };
+    let n_faces = read_count(words, "the number of faces")?;
+    words.skip_line();
+    Ok(OffHeader {
+        n_vertices,
+        n_faces,
+        has_vertex_colors: prefix.iter().any(|c| b"Cc".contains(c)),
+        n_between: if prefix.contains(&b'N') { 3 } else { 0 },
+    })
+}
+
+/// The color in what is left of a line.
+fn read_color(words: &mut Words<'_>) -> Option<[u8; 3]> {
+    let mut color = [0.0; 3];
+    let mut is_whole = true;
+    for part in &mut color {
+        let word = words.next_on_line()?;
+        is_whole &= natural(word).is_some();
+        *part = number(word).ok()?;
+    }
+    Some(color_of_parts(if is_whole { color.map(|part| part / 255.0) } else { color }))
+}
+
+fn read_vertex(words: &mut Words<'_>, first: &[u8], draft: &mut Draft) -> Result<(), Fault> {
+    let mut point = [0.0; 3];
+    let mut not_finite = None;
+    for (i, coordinate) in point.iter_mut().enumerate() {
+        let word = if i == 0 { Some(first) } else { words.next_on_line() };
+        let word = word.ok_or(Fault::TooFewNumbers { record: "vertex", needed: 3, found: i })?;
+        *coordinate = match number(word) {
+            Err(fault @ Fault::NotFinite(_)) => {
+                not_finite.get_or_insert(fault);
+                f64::NAN
+            }
+            other => other?,
+        };
+    }
+    if let Some(fault) = not_finite {
+        draft.leave_unsound_vertex(Some(words.line()), fault);
+    }
+    draft.soup.positions.push(DVec3::from_array(point));
+    Ok(())
+}
+
 fn read_count(words: &mut Words<'_>, expected: &'static str) -> Result<u64, Located> {
     let word = words.next().unwrap_or_default();
+    count(words, word, expected)
+}
+
+fn count(words: &Words<'_>, word: &[u8], expected: &'static str) -> Result<u64, Located> {
     natural(word).ok_or_else(|| {
         Located::at(words.line(), Fault::Unexpected { expected, found: shown(word) })
     })

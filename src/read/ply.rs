@@ -1,7 +1,8 @@
 //! PLY by ply-rs-bw: text, and binary of either byte order.
 //!
 //! Elements are read a batch at a time into small structs of our own and appended to flat arrays,
-//! so that memory follows the data and not the counts of the header.
+//! so memory follows the data and not the counts of the header. Faces, edges, and colors of faces or
+//! else of vertices count; all other properties are ignored.
 
 use std::borrow::Cow;
 
@@ -14,6 +15,7 @@ use ply_rs_bw::ply::{
 
 use super::Draft;
 use super::error::{Fault, Located};
+use super::parts::{PartTable, color_of_parts, mean_color};
 use super::text::{Words, shown};
 use super::warning::Notice;
 use crate::model::mesh::MeshError;
@@ -24,10 +26,42 @@ const BATCH: usize = 4096;
 /// Names of the list of a face's corners.
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
+/// A color as it is read, part by part.
+#[derive(Debug, Default)]
+struct Color {
+    parts: [f64; 3],
+    n_parts: usize,
+}
+
+impl Color {
+    /// Takes a property if it is part of a color: bytes, or numbers from 0 to 1.
+    fn set(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let part = match name {
+            "red" | "diffuse_red" => 0,
+            "green" | "diffuse_green" => 1,
+            "blue" | "diffuse_blue" => 2,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        self.parts[part] = match value {
+            Property::UChar(v) => f64::from(v) / 255.0,
+            Property::Float(v) => v.into(),
+            Property::Double(v) => v,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        self.n_parts += 1;
+        PropertyAccessResult::Set
+    }
+
+    fn bytes(&self) -> Option<[u8; 3]> {
+        (self.n_parts >= 3).then(|| color_of_parts(self.parts))
+    }
+}
+
 /// A position as it is read; coordinates that are not there stay zero.
 #[derive(Debug, Default)]
 struct Vertex {
     position: DVec3,
+    color: Color,
 }
 
 impl PropertyAccess for Vertex {
@@ -40,7 +74,7 @@ impl PropertyAccess for Vertex {
             "x" => &mut self.position.x,
             "y" => &mut self.position.y,
             "z" => &mut self.position.z,
-            _ => return PropertyAccessResult::Ignored,
+            _ => return self.color.set(name, value),
         };
         *coordinate = match value {
             Property::Char(v) => v.into(),
@@ -61,6 +95,7 @@ impl PropertyAccess for Vertex {
 #[derive(Debug, Default)]
 struct Face {
     corners: Vec<i64>,
+    color: Color,
 }
 
 impl PropertyAccess for Face {
@@ -73,7 +108,7 @@ impl PropertyAccess for Face {
             list.into_iter().map(Into::into).collect()
         }
         if !CORNER_LISTS.contains(&name) {
-            return PropertyAccessResult::Ignored;
+            return self.color.set(name, value);
         }
         self.corners = match value {
             Property::ListChar(list) => widened(list),
@@ -82,6 +117,36 @@ impl PropertyAccess for Face {
             Property::ListUShort(list) => widened(list),
             Property::ListInt(list) => widened(list),
             Property::ListUInt(list) => widened(list),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// The ends of an edge as the file numbers them; negative while they are not there.
+#[derive(Debug)]
+struct Edge {
+    ends: [i64; 2],
+}
+
+impl PropertyAccess for Edge {
+    fn new() -> Self {
+        Self { ends: [-1; 2] }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let end = match name {
+            "vertex1" => &mut self.ends[0],
+            "vertex2" => &mut self.ends[1],
+            _ => return PropertyAccessResult::Ignored,
+        };
+        *end = match value {
+            Property::Char(v) => v.into(),
+            Property::UChar(v) => v.into(),
+            Property::Short(v) => v.into(),
+            Property::UShort(v) => v.into(),
+            Property::Int(v) => v.into(),
+            Property::UInt(v) => v.into(),
             _ => return PropertyAccessResult::UnsupportedType,
         };
         PropertyAccessResult::Set
@@ -111,21 +176,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     }
     let n_vertices = header.elements.get("vertex").map_or(0, |element| element.count);
     let mut draft = Draft::default();
+    let mut vertex_colors = Vec::new();
+    let mut face_colors = Vec::new();
     for element in header.elements.values() {
         let mut batches = Batches { reader: &mut reader, header: &header, element, done: 0 };
         match element.name.as_str() {
-            "vertex" => read_vertices(&mut batches, &mut draft)?,
-            "face" => read_faces(&mut batches, n_vertices, &mut draft)?,
-            other => {
-                batches.skip()?;
-                if other == "edge" && element.count > 0 {
-                    draft.n_lines = element.count;
-                    let first_line = None;
-                    draft.notices.push(Notice::LinesAndPoints { count: element.count, first_line });
-                }
-            }
+            "vertex" => read_vertices(&mut batches, &mut draft, &mut vertex_colors)?,
+            "face" => read_faces(&mut batches, n_vertices, &mut draft, &mut face_colors)?,
+            "edge" if has_ends(element) => read_edges(&mut batches, n_vertices, &mut draft)?,
+            _ => batches.skip()?,
         }
     }
+    color_faces(&mut draft, &face_colors, &vertex_colors);
     let rest = if is_text { reader.get_ref().trim_ascii() } else { reader.get_ref() };
     if !rest.is_empty() {
         draft.notices.push(Notice::TrailingBytes { count: rest.len() });
@@ -147,7 +209,7 @@ fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
 /// Refuses headers that lack positions or faces.
 fn check(header: &Header) -> Result<(), Fault> {
     let Some(vertex) = header.elements.get("vertex") else {
-        return Err(Fault::NoFaces { vertices: 0, lines: 0, degenerate: 0 });
+        return Err(Fault::NoFaces { vertices: 0, degenerate: 0 });
     };
     let is_number = |name| {
         vertex.properties.get(name).is_some_and(|p| matches!(p.data_type, PropertyType::Scalar(_)))
@@ -159,13 +221,16 @@ fn check(header: &Header) -> Result<(), Fault> {
         });
     }
     let Some(face) = header.elements.get("face") else {
+        if header.elements.get("edge").is_some_and(has_ends) {
+            return Ok(());
+        }
         if header.elements.contains_key("tristrips") {
             return Err(Fault::Unsupported {
                 what: "triangle strips in PLY",
                 remedy: "export the faces as polygons",
             });
         }
-        return Err(Fault::NoFaces { vertices: vertex.count, lines: 0, degenerate: 0 });
+        return Err(Fault::NoFaces { vertices: vertex.count, degenerate: 0 });
     };
     let is_list = |name| {
         face.properties.get(name).is_some_and(|p| {
@@ -180,6 +245,11 @@ fn check(header: &Header) -> Result<(), Fault> {
         });
     }
     Ok(())
+}
+
+/// Whether edges say which vertices they join.
+fn has_ends(edge: &ElementDef) -> bool {
+    ["vertex1", "vertex2"].iter().all(|&name| edge.properties.contains_key(name))
 }
 
 /// Makes text be read as doubles: its digits need not have been single precision.
@@ -261,35 +331,83 @@ fn located(error: ParseError) -> Located {
     Located { line: error.line(), fault: Fault::Parser(message) }
 }
 
-fn read_vertices(batches: &mut Batches<'_, '_>, draft: &mut Draft) -> Result<(), Located> {
+fn read_vertices(
+    batches: &mut Batches<'_, '_>,
+    draft: &mut Draft,
+    colors: &mut Vec<[u8; 3]>,
+) -> Result<(), Located> {
     while let Some((line, vertices)) = batches.next::<Vertex>()? {
-        for (i, Vertex { position }) in vertices.into_iter().enumerate() {
+        for (i, Vertex { position, color }) in vertices.into_iter().enumerate() {
             if !position.is_finite() {
                 let index = draft.soup.positions.len() + 1;
                 let fault = Fault::ElementNotFinite { element: "vertex", index };
-                return Err(Located { line: batches.line(line, i), fault });
+                draft.leave_unsound_vertex(batches.line(line, i), fault);
             }
             draft.soup.positions.push(position);
+            colors.extend(color.bytes());
         }
     }
     Ok(())
+}
+
+fn read_edges(
+    batches: &mut Batches<'_, '_>,
+    n_vertices: usize,
+    draft: &mut Draft,
+) -> Result<(), Located> {
+    while let Some((line, edges)) = batches.next::<Edge>()? {
+        for (i, Edge { ends }) in edges.into_iter().enumerate() {
+            let line = batches.line(line, i);
+            let mut wire = [0; 2];
+            for (end, number) in wire.iter_mut().zip(ends) {
+                *end = vertex_index(number, n_vertices).map_err(|fault| Located { line, fault })?;
+            }
+            draft.soup.wires.push(wire);
+        }
+    }
+    Ok(())
+}
+
+/// The vertex that a file numbers so.
+fn vertex_index(number: i64, n_vertices: usize) -> Result<u32, Fault> {
+    let index = u32::try_from(number).ok().filter(|&index| (index as usize) < n_vertices);
+    index.ok_or_else(|| Fault::MissingVertex { index: number.to_string(), vertices: n_vertices })
+}
+
+/// Gives each face the part of its own color, or of the mean color of its corners.
+fn color_faces(draft: &mut Draft, of_faces: &[Option<[u8; 3]>], of_vertices: &[[u8; 3]]) {
+    let soup = &draft.soup;
+    let has_vertex_colors = !of_vertices.is_empty() && of_vertices.len() == soup.positions.len();
+    if !has_vertex_colors && of_faces.iter().all(Option::is_none) {
+        return;
+    }
+    let mut parts = PartTable::default();
+    let mut face_parts = Vec::with_capacity(soup.n_faces());
+    for (range, of_face) in soup.face_starts.windows(2).zip(of_faces) {
+        let corners = &soup.corners[range[0] as usize..range[1] as usize];
+        let of_corners = || {
+            let colors = corners.iter().map(|&vertex| of_vertices[vertex as usize]);
+            has_vertex_colors.then(|| mean_color(colors)).flatten()
+        };
+        face_parts.push(parts.index_of_color(of_face.or_else(of_corners)));
+    }
+    draft.soup.face_parts = face_parts;
+    draft.set_parts(parts);
 }
 
 fn read_faces(
     batches: &mut Batches<'_, '_>,
     n_vertices: usize,
     draft: &mut Draft,
+    colors: &mut Vec<Option<[u8; 3]>>,
 ) -> Result<(), Located> {
     while let Some((line, faces)) = batches.next::<Face>()? {
-        for (i, Face { corners }) in faces.into_iter().enumerate() {
+        for (i, Face { corners, color }) in faces.into_iter().enumerate() {
             let line = batches.line(line, i);
             let start = draft.soup.corners.len();
             for corner in corners {
-                let index = u32::try_from(corner).ok().filter(|&c| (c as usize) < n_vertices);
-                let missing =
-                    || Fault::MissingVertex { index: corner.to_string(), vertices: n_vertices };
-                let index = index.ok_or_else(|| Located { line, fault: missing() })?;
-                draft.soup.corners.push(index);
+                let index = vertex_index(corner, n_vertices);
+                draft.soup.corners.push(index.map_err(|fault| Located { line, fault })?);
             }
             if draft.soup.corners.len() >= u32::MAX as usize {
                 return Err(Fault::Mesh(MeshError::TooLarge).into());
@@ -299,6 +417,7 @@ fn read_faces(
                 draft.leave_out_face(line);
             } else {
                 draft.soup.face_starts.push(draft.soup.corners.len() as u32);
+                colors.push(color.bytes());
             }
         }
     }

@@ -2,44 +2,56 @@
 //!
 //! Of the crates, stl_io takes a binary file whose header begins with "solid" for text (many
 //! programs write such headers) and refuses text in capitals; nom_stl reads single precision only
-//! and is no longer kept up.
+//! and is no longer maintained.
 //!
 //! ```text
 //!  binary: 80 bytes of anything │ n: u32 │ n × (normal, 3 corners: 12 × f32 │ 2 bytes)
 //! ```
+//!
+//! The two bytes after a triangle may hold its color: VisCAM and SolidView set the highest bit and
+//! put blue lowest; Magics, which writes `COLOR=` into the header, clears that bit and puts red lowest.
+//!
+//! Many programs write text that is almost STL. Where the meaning is clear it is read, with a notice:
+//! `endsolidNAME`, `end solid`, no `endsolid` at all, comments before `solid`.
 
 use glam::DVec3;
 
 use super::Draft;
 use super::error::{Fault, Located};
+use super::parts::PartTable;
 use super::text::{Words, decode, name, number, shown};
 use super::warning::Notice;
-use crate::model::mesh::{MeshError, Part, PolygonSoup};
+use crate::model::mesh::{MeshError, MeshPart, PolygonSoup};
 
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// Whether bytes are surely STL: binary of just the right length, or text that begins as it must.
+/// How much of a file is looked at to see whether it is text.
+const LOOKED_AT: usize = 1024;
+
+/// Whether bytes are surely STL: binary of exactly the right length, or text that begins as it must.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
-    let is_whole = triangle_count(bytes).is_some_and(|count| {
-        count > 0 && HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64
-    });
-    is_whole || is_text(bytes)
+    is_whole(bytes) || is_text(bytes) && begins_with_solid(bytes)
 }
 
 /// Reads STL of either kind.
 ///
-/// The length decides first: a file just as long as its count of triangles asks is binary, even
+/// The length decides first: a file exactly as long as its count of triangles demands is binary, even
 /// when it begins with "solid".
 pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
-    let is_whole = triangle_count(bytes)
-        .is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64);
     let text = decode(bytes);
-    if !is_whole && is_text(&text) {
+    if !is_whole(bytes) && is_text(&text) {
         read_text(&text)
     } else {
         read_binary(bytes).map_err(Into::into)
     }
+}
+
+/// Whether a file is exactly as long as its count of triangles demands, and has any.
+fn is_whole(bytes: &[u8]) -> bool {
+    triangle_count(bytes).is_some_and(|count| {
+        count > 0 && HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64
+    })
 }
 
 /// The number of triangles that the header of a binary file states.
@@ -48,15 +60,31 @@ fn triangle_count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(*count)))
 }
 
-/// Text begins with the word "solid"; a binary file has a zero byte in its header or count.
+/// Text has no control characters. A binary file has zero bytes in its count, or in its numbers.
 fn is_text(bytes: &[u8]) -> bool {
-    let first = Words::new(bytes, None).next();
-    first.is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
-        && !bytes[..bytes.len().min(HEADER)].contains(&0)
+    let start = &bytes[..bytes.len().min(LOOKED_AT)];
+    !start.is_empty()
+        && start.iter().all(|byte| *byte >= b' ' || byte.is_ascii_whitespace() || *byte == 0x0B)
+}
+
+/// Whether the first line that is no comment begins with "solid".
+fn begins_with_solid(bytes: &[u8]) -> bool {
+    let mut words = Words::new(bytes, None);
+    loop {
+        match words.next() {
+            Some(word) if is_comment(word) => words.skip_line(),
+            Some(word) => return word.eq_ignore_ascii_case(b"solid"),
+            None => return false,
+        };
+    }
+}
+
+fn is_comment(word: &[u8]) -> bool {
+    word.starts_with(b"#") || word.starts_with(b";") || word.starts_with(b"//")
 }
 
 fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
-    let Some(count) = triangle_count(bytes) else {
+    let Some(stated) = triangle_count(bytes) else {
         return Err(Fault::Truncated {
             expected: format!("at least {HEADER} bytes of a binary STL or the word `solid`"),
             found: format!("{} bytes found", bytes.len()),
@@ -64,18 +92,17 @@ fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
     };
     let (triangles, rest) = bytes[HEADER..].as_chunks::<TRIANGLE>();
     let present = triangles.len() as u64;
-    if count > present {
-        return Err(Fault::Truncated {
-            expected: format!("{count} triangles"),
-            found: format!("there are bytes for {present}"),
-        });
+    let mut draft = Draft::default();
+    let is_exact = stated > 0 && stated <= present;
+    let n_triangles = if is_exact { stated } else { present };
+    if !is_exact && present > 0 {
+        draft.notices.push(Notice::WrongCount { stated, present, element: "triangle" });
     }
-    let triangles = &triangles[..count as usize];
+    let triangles = &triangles[..n_triangles as usize];
     if triangles.len() >= (u32::MAX / 3) as usize {
         return Err(Fault::Mesh(MeshError::TooLarge));
     }
-    let mut draft = Draft::default();
-    let trailing = (present - count) as usize * TRIANGLE + rest.len();
+    let trailing = (present - n_triangles) as usize * TRIANGLE + rest.len();
     if trailing > 0 {
         draft.notices.push(Notice::TrailingBytes { count: trailing });
     }
@@ -97,7 +124,47 @@ fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
         face_starts: (0..=n_corners).step_by(3).collect(),
         ..PolygonSoup::default()
     };
+    color_triangles(bytes, triangles, &mut draft.soup);
     Ok(draft)
+}
+
+/// Gives each triangle the part of its color, if any has one.
+fn color_triangles(bytes: &[u8], triangles: &[[u8; TRIANGLE]], soup: &mut PolygonSoup) {
+    let attribute = |triangle: &[u8; TRIANGLE]| {
+        let [.., low, high] = *triangle;
+        u16::from_le_bytes([low, high])
+    };
+    let of_object = magics_color(&bytes[..HEADER - 4]);
+    let has_colors = of_object.is_some() || triangles.iter().any(|t| attribute(t) & 0x8000 != 0);
+    if !has_colors {
+        return;
+    }
+    let five_bits = |attribute: u16, shift: u16| {
+        let part = u32::from(attribute >> shift & 31);
+        ((part * 255 + 15) / 31) as u8
+    };
+    let mut parts = PartTable::default();
+    soup.face_parts.reserve_exact(triangles.len());
+    for triangle in triangles {
+        let bits = attribute(triangle);
+        let rising = [0, 5, 10].map(|shift| five_bits(bits, shift));
+        let [red, green, blue] = rising;
+        let color = match (of_object, bits & 0x8000 != 0) {
+            (Some(object), true) => Some(object),
+            (Some(_), false) => Some([red, green, blue]),
+            (None, true) => Some([blue, green, red]),
+            (None, false) => None,
+        };
+        soup.face_parts.push(parts.index_of_color(color));
+    }
+    soup.parts = parts.into_parts();
+}
+
+/// The color of the whole object, as Magics writes it into the header.
+fn magics_color(header: &[u8]) -> Option<[u8; 3]> {
+    const KEY: &[u8] = b"COLOR=";
+    let at = header.windows(KEY.len()).position(|window| window == KEY)? + KEY.len();
+    header.get(at..at + 4)?.first_chunk::<3>().copied()
 }
 
 /// Reads any number of `solid NAME … endsolid`, in any letter case.
@@ -105,6 +172,7 @@ fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
     let mut draft = Draft::default();
     let mut words = Words::new(bytes, None);
     let mut solids = Vec::new();
+    skip_comments(&mut words, &mut draft);
     loop {
         let start = words.clone();
         let Some(word) = words.next() else { break };
@@ -119,7 +187,7 @@ fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
         let group = name(words.rest_of_line());
         read_solid(&mut words, &mut draft)?;
         draft.soup.face_parts.resize(draft.soup.n_faces(), solids.len() as u32);
-        solids.push(Part { group, ..Part::default() });
+        solids.push(MeshPart { group, ..MeshPart::default() });
     }
     if solids.len() == 1 && solids.iter().all(|solid| solid.group.is_empty()) {
         draft.soup.face_parts.clear();
@@ -129,13 +197,63 @@ fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
     Ok(draft)
 }
 
-/// Reads facets up to and including the line of `endsolid`.
+/// Skips lines of comment at the start, and says so.
+fn skip_comments(words: &mut Words<'_>, draft: &mut Draft) {
+    let mut first_line = None;
+    loop {
+        let start = words.clone();
+        if !words.next().is_some_and(is_comment) {
+            *words = start;
+            break;
+        }
+        first_line.get_or_insert(words.line());
+        words.rest_of_line();
+    }
+    if let Some(line) = first_line {
+        draft.notices.push(Notice::Irregular { line, what: "a comment before `solid` is skipped" });
+    }
+}
+
+/// Reads facets up to and including the line of `endsolid`, or to the end of the file.
 fn read_solid(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
     loop {
-        let word = required(words, "`facet` or `endsolid`")?;
+        let start = words.clone();
+        let Some(word) = words.next() else {
+            let what = "`endsolid` is missing at the end; what is there is read";
+            draft.notices.push(Notice::Irregular { line: words.line(), what });
+            return Ok(());
+        };
+        let line = words.line();
         if word.eq_ignore_ascii_case(b"endsolid") {
             words.rest_of_line();
             return Ok(());
+        }
+        if begins_with(word, b"endsolid") {
+            let what = "a name joined to `endsolid` is read as `endsolid`";
+            draft.notices.push(Notice::Irregular { line, what });
+            words.rest_of_line();
+            return Ok(());
+        }
+        if word.eq_ignore_ascii_case(b"end") {
+            if let Some(next) = words.next_on_line()
+                && !begins_with(next, b"solid")
+            {
+                return Err(unexpected(words, "`endsolid`", next));
+            }
+            let what = "`end solid` is read as `endsolid`";
+            draft.notices.push(Notice::Irregular { line, what });
+            words.rest_of_line();
+            return Ok(());
+        }
+        if word.eq_ignore_ascii_case(b"solid") {
+            let what = "`endsolid` is missing before `solid`; what is there is read";
+            draft.notices.push(Notice::Irregular { line, what });
+            *words = start;
+            return Ok(());
+        }
+        if is_comment(word) {
+            words.rest_of_line();
+            continue;
         }
         if !word.eq_ignore_ascii_case(b"facet") {
             return Err(unexpected(words, "`facet` or `endsolid`", word));
@@ -146,6 +264,10 @@ fn read_solid(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
         read_loop(words, draft)?;
         keyword(words, "`endfacet`", b"endfacet")?;
     }
+}
+
+fn begins_with(word: &[u8], start: &[u8]) -> bool {
+    word.get(..start.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(start))
 }
 
 /// Reads the corners of one facet up to and including `endloop`.

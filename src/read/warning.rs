@@ -1,17 +1,17 @@
-//! What a reader left out although the model can be drawn.
+//! What a reader left out or reinterpreted in a model that can still be drawn.
 
 use std::fmt;
 
 use super::error::write_one_line;
 
-/// Something that was left out of a model, with the name of its file.
+/// A notice about a model, with the name of its file.
 ///
 /// Displays as one line, `file: what`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
     /// Name of the file as it was given.
     pub name: String,
-    /// What was left out.
+    /// What happened.
     pub notice: Notice,
 }
 
@@ -23,7 +23,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// What was left out.
+/// What was left out or reinterpreted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Notice {
     /// Faces with fewer than three different corners.
@@ -33,12 +33,28 @@ pub enum Notice {
         /// Line of the first, where the reader knows it.
         first_line: Option<usize>,
     },
-    /// Records that draw lines or points, not faces (`l` and `p` in OBJ, edges in PLY).
-    LinesAndPoints {
-        /// How many.
+    /// Points, which are not drawn: `p` records of OBJ, points of glTF.
+    Points {
+        /// How many records, or points in glTF.
         count: usize,
         /// Line of the first, in text formats.
         first_line: Option<usize>,
+    },
+    /// Text that departs from the format but whose meaning is clear.
+    Irregular {
+        /// Line of it.
+        line: usize,
+        /// What was found, and what became of it.
+        what: &'static str,
+    },
+    /// A count in a header that disagrees with the size of the file, so that all of it is read.
+    WrongCount {
+        /// The count in the header.
+        stated: u64,
+        /// How many there are.
+        present: u64,
+        /// What is counted.
+        element: &'static str,
     },
     /// Records of one kind that the reader does not know.
     UnknownRecord {
@@ -74,11 +90,14 @@ impl fmt::Display for Notice {
                 counted(*count, "face"),
                 first(first_line)
             ),
-            Self::LinesAndPoints { count, first_line } => write!(
+            Self::Points { count, first_line } => {
+                write!(f, "{} left out{}", counted(*count, "point"), first(first_line))
+            }
+            Self::Irregular { line, what } => write!(f, "{what} (line {line})"),
+            Self::WrongCount { stated, present, element } => write!(
                 f,
-                "{} of lines or points left out{}",
-                counted(*count, "record"),
-                first(first_line)
+                "the header says {}, the file holds {present}; all of these are read",
+                counted(*stated as usize, element)
             ),
             Self::UnknownRecord { keyword, count, first_line } => write!(
                 f,

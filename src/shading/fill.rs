@@ -20,7 +20,7 @@ use crate::engines::face::region::Region;
 use crate::engines::face::{
     FaceEngine, FaceError, FaceOptions, FaceWork, Painting, Prepared, merge,
 };
-use crate::model::mesh::Part;
+use crate::model::mesh::MeshPart;
 use crate::model::scene::Scene;
 use crate::plot::{FillLayer, Fills};
 use crate::shading::light::{
@@ -75,7 +75,8 @@ pub struct FillOptions {
     pub depth_cue: f64,
     /// The color of faces that have none of their material; `None` for that of paper.
     pub paint: Option<[u8; 3]>,
-    /// Colors of materials by their name, for each model of the scene.
+    /// Colors of materials by their name, for each model of the scene; they go before the colors that
+    /// the model itself gives.
     pub materials: Vec<BTreeMap<String, [u8; 3]>>,
     /// The inks; `None` for any number of colors.
     pub palette: Option<Palette>,
@@ -232,9 +233,10 @@ struct Shader<'a> {
 impl<'a> Shader<'a> {
     fn new(scene: &'a Scene, camera: &'a Camera, faces: &[u32], options: &FillOptions) -> Self {
         let paint = parts(options.paint.unwrap_or(DEFAULT_PAINT));
-        let of_part = |part: &Part| {
+        let of_part = |part: &MeshPart| {
             let colors = options.materials.get(part.model as usize);
-            colors.and_then(|colors| colors.get(&part.material)).copied().map_or(paint, parts)
+            let named = colors.and_then(|colors| colors.get(&part.material)).copied();
+            named.or(part.color).map_or(paint, parts)
         };
         let mut shader = Self {
             scene,

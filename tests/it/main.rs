@@ -9,7 +9,7 @@ mod scenes;
 
 // The library: what every engine and stage must obey, and what readers accept and refuse.
 mod laws;
-mod readers;
+pub(crate) mod readers;
 
 // The program as users run it, and the pictures in `plots/`.
 mod golden;

@@ -230,6 +230,6 @@ impl Sheets {
             0 => None,
             n => Some(SurfaceNote::RimsJoined(n).to_string()),
         });
-        Ok((mesh, Notes { summary, warnings }))
+        Ok((mesh, Notes { summary, warnings, ..Notes::default() }))
     }
 }

@@ -11,6 +11,7 @@ mod drawings;
 mod dxf;
 pub(crate) mod engines;
 mod extent;
+mod flush;
 mod framing;
 mod intersections;
 mod invariance;

@@ -1,14 +1,24 @@
 //! Files and formulas: what is read, what is refused, what is left out with a warning.
 
+mod colors;
 mod cube;
 mod damage;
+mod diagnosis;
+mod equal_faces;
+pub(crate) mod export;
 mod folder;
 mod formula;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod hostile;
 mod obj;
+mod stl;
 mod svg;
 mod svg_shown;
+#[cfg(feature = "3mf")]
+mod three_mf;
 mod weld;
+mod wires;
 
 use hiddenline::stages::read::{Model, ReadError, read_bytes};
 

