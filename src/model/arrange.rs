@@ -179,7 +179,10 @@ mod tests {
         let mesh = upright(UpAxis::Y, triangle(dvec3(1.0, 2.0, 3.0)));
         let expected = [dvec3(1.0, -3.0, 2.0), dvec3(2.0, -3.0, 2.0), dvec3(1.0, -3.0, 3.0)];
         assert_eq!(mesh.positions(), expected);
-        assert_eq!(upright(UpAxis::NegativeY, mesh), triangle(dvec3(1.0, 2.0, 3.0)));
+        let back = upright(UpAxis::NegativeY, mesh.clone());
+        assert_eq!(back.positions(), triangle(dvec3(1.0, 2.0, 3.0)).positions());
+        let around = upright(UpAxis::NegativeZ, upright(UpAxis::NegativeZ, mesh.clone()));
+        assert_eq!(around.positions(), mesh.positions());
     }
 
     #[test]
@@ -205,6 +208,17 @@ mod tests {
         assert_eq!(mesh.positions()[0], DVec3::ZERO);
         // Scaled: (2, 0, 0); turned: (0, 2, 0); moved.
         assert_eq!(mesh.positions()[3], dvec3(10.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn a_scaled_mesh_is_as_uncertain_as_its_file() {
+        let error_of = |scale: f64| {
+            let pose = Pose { scale, ..Pose::default() };
+            let models = vec![(triangle(dvec3(0.5, 0.25, 8.0)), pose)];
+            Arrangement::default().arrange(models).expect("finite").0.coordinate_error()
+        };
+        assert!(error_of(1.0) > 0.0);
+        assert_eq!(error_of(25.4), 25.4 * error_of(1.0));
     }
 
     #[test]

@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn few_decimals_count_rather_than_size() {
-        assert_eq!(error_of(&[84_523.123, 446_021.9, 12.001]), 0.002);
+        assert_eq!(error_of(&[84_523.12, 446_021.913, 12.001]), 0.002);
         // As written with `%.9g`: one decimal less in the top decade.
         assert_eq!(error_of(&[12.3456789, 6.92820323, 4.8985872e-16]), 2e-7);
         assert_eq!(error_of(&[8.0, 6.92820323]), 2e-8);

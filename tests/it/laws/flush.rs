@@ -179,10 +179,10 @@ fn of_a_plate_beside_half_of_another_only_the_common_border_is_drawn() {
 
 #[test]
 fn a_line_that_coincides_with_a_flush_part_is_not_lost() {
-    // Under the seam of two plates hangs a fin whose upper edge is a piece of the seam.
+    // Under the seam of two plates hangs a slanted fin whose upper edge is a piece of the seam.
     let plates = [[[0, 0], [4, 2]], [[1, 2], [3, 4]], [[1, -1], [2, 0]]];
     let hung = |n: usize, x: i32, y: i32| match n {
-        2 => dvec3(f64::from(x), 2.0, f64::from(y)),
+        2 => dvec3(f64::from(x), f64::from(2 + y), f64::from(y)),
         _ => flat(n, x, y),
     };
     let scene = scene(&plates, hung);
@@ -190,6 +190,15 @@ fn a_line_that_coincides_with_a_flush_part_is_not_lost() {
         let found = length(&scene, BOUNDARY, engine);
         assert!((found - 17.0).abs() < 1e-9, "{engine:?}: {found}");
     }
+}
+
+#[test]
+fn parts_before_a_larger_face_are_no_outline() {
+    let plates = [[[0, 0], [4, 2]], [[1, 2], [3, 4]], [[-1, -1], [6, 6]]];
+    let deeper = |n: usize, x: i32, y: i32| flat(n, x, y) - (n / 2) as f64 * DVec3::Z;
+    let scene = scene(&plates, deeper);
+    let found = length(&scene, LineSelection::NONE.with_outline(), LineEngine::Roberts);
+    assert!((found - 28.0).abs() < 1e-9, "{found}");
 }
 
 #[test]

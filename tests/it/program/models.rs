@@ -309,6 +309,14 @@ fn units_of_files_set_the_scale_unless_unit_is_given() {
     assert!(stderr.contains("small.glb is in units of 1000 mm and was scaled by"), "{stderr}");
     let (_, stderr) = width(&["in.3mf", "small.glb", "--drawing-scale", "1:1", "--unit", "cm"]);
     assert!(!stderr.contains("scaled"), "{stderr}");
+    // Coordinates in DXF are in the model's own unit.
+    let dxf = |arguments: &[&str]| {
+        let draw = ["draw", "a.glb", "--drawing-scale", "1:50", "--format", "dxf"];
+        text(&hiddenline(folder.path(), &[&draw[..], arguments].concat()).stdout)
+            .replace("\r\n", "\n")
+    };
+    assert!(dxf(&[]).contains("$INSUNITS\n 70\n6\n"), "meters");
+    assert_eq!(dxf(&[]), dxf(&["--unit", "m"]));
 }
 
 #[test]

@@ -265,3 +265,24 @@ fn crc32(bytes: &[u8]) -> u32 {
         })
     })
 }
+
+#[test]
+fn the_library_brings_models_of_known_units_to_the_first_one_and_upright() {
+    use hiddenline::{ModelFormat, Scene, UpAxis};
+    let house = Triangles::house();
+    let bounds =
+        |builder: hiddenline::SceneBuilder| builder.build().unwrap().mesh().bounds().unwrap();
+    let (low, high) =
+        bounds(Scene::builder().bytes("b.glb", &house.glb(), ModelFormat::Gltf).unwrap());
+    let both = |builder: hiddenline::SceneBuilder| {
+        let first = builder.bytes("a.3mf", &house.three_mf(), ModelFormat::ThreeMf).unwrap();
+        bounds(first.bytes("b.glb", &house.glb(), ModelFormat::Gltf).unwrap())
+    };
+    // The 3MF is in millimeters, the GLB in meters and so a thousand times as large.
+    let found = both(Scene::builder());
+    assert_eq!(found, (low.min(1000.0 * low), high.max(1000.0 * high)));
+    // Taken as z-up, the GLB lies on its back.
+    let (lying_low, lying_high) = both(Scene::builder().up_axis(UpAxis::Z));
+    let height = 1000.0 * (high.z - low.z);
+    assert!((lying_high.y - lying_low.y - height).abs() < 0.1 * height);
+}
