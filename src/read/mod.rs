@@ -266,6 +266,7 @@ fn read_model(
         ModelFormat::Gltf => gltf::read(bytes, folder),
         #[cfg(not(feature = "gltf"))]
         ModelFormat::Gltf => {
+            let _ = folder;
             Err(Fault::from(FeatureOff { format: "glTF", feature: "gltf" }).into())
         }
         #[cfg(feature = "3mf")]
