@@ -22,7 +22,7 @@ use crate::strokes::{StrokeKind, Strokes};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// What becomes of the spans.
+/// Which spans are kept, and which of them join.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChainOptions {
     /// Keep hidden spans too.

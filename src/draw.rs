@@ -89,7 +89,7 @@ impl DrawOptions {
         Self { crease_deg, ..self }
     }
 
-    /// What becomes of hidden lines.
+    /// Whether hidden lines are left out, dashed or solid.
     #[must_use]
     pub fn hidden(self, hidden: HiddenLines) -> Self {
         Self { hidden, ..self }

@@ -23,7 +23,7 @@ use thiserror::Error;
 
 pub use self::image_point::ImagePoint;
 
-/// How rays of sight run.
+/// The projection: perspective or parallel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Projection {
     /// All through the eye.

@@ -45,7 +45,7 @@ impl Notes {
     }
 }
 
-/// A run of a command, from its start to what is told at the end.
+/// A run of a command, from its start to its summary.
 pub(super) struct Run<'a> {
     pub(super) output: &'a OutputOptions,
     pub(super) start: Instant,

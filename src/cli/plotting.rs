@@ -194,7 +194,7 @@ impl Plotting {
         self.pens.iter().map(rule).collect()
     }
 
-    /// Joins, simplifies, orders and splits; `usual` is what holds unless it was set otherwise.
+    /// Joins, simplifies, orders and splits the strokes; `usual` holds the defaults.
     pub(super) fn finish(
         &self,
         plot: Plot,

@@ -1,4 +1,4 @@
-//! What clap is told about all options at once, and what its messages leave to be wished.
+//! Settings of clap for all options at once, and friendlier messages for its errors.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};

@@ -152,7 +152,7 @@ pub(super) struct PenText {
     pub(super) width_mm: Option<f64>,
     /// `#rrggbb`.
     pub(super) color: Option<String>,
-    /// What AxiDraw's software is told.
+    /// Layer controls for AxiDraw's software.
     pub(super) controls: LayerControls,
 }
 

@@ -34,7 +34,7 @@ pub(super) struct LineArgs {
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_CREASE_DEG)]
     crease: f64,
-    /// What becomes of hidden lines; if drawn, they are on their own layer [default: none]
+    /// Leave hidden lines out, or draw them on a layer of their own [default: none]
     #[arg(long, value_enum)]
     hidden: Option<Hidden>,
     /// Draw hidden lines that are covered at most N times, each number on its own layer
@@ -47,7 +47,7 @@ pub(super) struct LineArgs {
     /// Lengths of dashes and gaps of hidden lines
     #[arg(long, value_name = "DASH,GAP", value_parser = values::dash, default_value = "2.5,1.25")]
     pub(super) dash: Dash,
-    /// How hidden lines are found; all engines give the same drawing
+    /// Hidden-line algorithm; all give the same drawing
     #[arg(long, value_enum, default_value = "auto")]
     engine: EngineName,
     /// Faces do not hide lines that lie this close to their plane, in model units
