@@ -14,11 +14,8 @@ const INKS: [[u8; 3]; 5] = [
 pub(crate) fn sheet() -> Result<Sheet, Error> {
     let scene = Scene::builder().up_axis(UpAxis::Y).open("examples/models/spot.obj")?.build()?;
     let view = View::from_angles(215.0, 14.0).distance(4.5);
-    let fill = FillOptions {
-        palette: Some(Palette::Inks(INKS.to_vec())),
-        paint: Some([255, 240, 210]),
-        ..FillOptions::default()
-    };
+    let inks = Palette::Inks(INKS.to_vec());
+    let fill = FillOptions::default().palette(inks).paint([255, 240, 210]);
     let drawing = scene.draw(&view, &DrawOptions::default()).filled(fill);
     drawing.title("Spot in five inks").on(Paper::A4)
 }

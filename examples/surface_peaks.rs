@@ -1,43 +1,21 @@
 //! A hill and a hollow over a square, by grid lines, with axes.
 
-mod plots;
-
-use glam::dvec3;
-
-use hiddenline::stages::axes::{Titles, axes};
-use hiddenline::stages::camera::framing::View;
-use hiddenline::stages::chain::grid_lines::{Lines, strokes};
-use hiddenline::stages::engines::surface::{CellOrder, max_min};
-use hiddenline::stages::page::{Page, PageOptions};
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::formula::{Formula, Variables};
-use hiddenline::stages::surface::{Grid, lattice_extent};
-
-use plots::{Result, plot_options, save};
+use hiddenline::{Aspect, Error, Paper, Sheet, Surface, SurfaceLines, Titles, View};
 
 const PEAKS: &str =
     "3*(1-x)^2*exp(-x^2-(y+1)^2) - 10*(x/5-x^3-y^5)*exp(-x^2-y^2) - exp(-(x+1)^2-y^2)/3";
 
-/// Heights are drawn at this scale.
-const Z_FACTOR: f64 = 0.22;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let formula = Formula::parse(PEAKS, Variables::Plane)?;
+pub(crate) fn sheet() -> Result<Sheet, Error> {
     // Sampled finely for smooth curves, of which every fifth is drawn.
-    let mut grid = Grid::sample(&formula, (-3.0, 3.0), (-3.0, 3.0), (241, 241))?;
-    grid.scale_heights(Z_FACTOR);
-    let (low, high) = grid.heights().unwrap_or_default();
-    let bounds = (dvec3(-3.0, -3.0, low), dvec3(3.0, 3.0, high));
-    let camera = View::default().camera(bounds)?;
-    let pieces = max_min::solve(&grid, &camera, CellOrder::Rows)?;
-    let mut drawing = strokes(&grid, &pieces, &camera, &Lines { every: 5, ..Lines::default() });
-    let titles = Titles { drawing: "Peaks".into(), ..Titles::default() };
-    let extent = lattice_extent(241, 241 * 241, |k| grid.point(k as u32), &camera);
-    drawing.append(&axes(&extent, bounds, Z_FACTOR, &camera, &titles));
-    let page = Page::place(&drawing.extent(&camera), &camera, &PageOptions::default())?;
-    Ok(page.plot(&drawing, plot_options("Peaks")).plot)
+    let peaks = Surface::formula(PEAKS)?.x(-3.0, 3.0).y(-3.0, 3.0).samples(241, 241);
+    let peaks = peaks.aspect(Aspect::Data).z_scale(0.22);
+    let titles = Titles::of_drawing("Peaks");
+    let lines = SurfaceLines::default().every(5).smoothness_mm(0.0).axes(titles);
+    peaks.draw(&View::default(), &lines).title("Peaks").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_peaks", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_peaks.svg")?;
+    sheet.save_png("plots/surface_peaks.png", 1000)
 }

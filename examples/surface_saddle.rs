@@ -1,28 +1,17 @@
 //! A saddle: the plane curves up along y and down along x.
 
-mod lined_surface;
-mod plots;
-mod viewpoint;
+use hiddenline::{Aspect, Error, Paper, Sheet, Surface, SurfaceLines, View};
 
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::formula::{Formula, Variables};
-use hiddenline::stages::surface::{Grid, LinedMesh};
-
-use lined_surface::{lined_plot, net};
-use plots::{Result, save};
-use viewpoint::seen_from;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let formula = Formula::parse("y^2 - x^2", Variables::Plane)?;
-    let range = (-1.0, 1.0);
+pub(crate) fn sheet() -> Result<Sheet, Error> {
     // Sampled finely for smooth curves.
-    let mut grid = Grid::sample(&formula, range, range, (161, 161))?;
-    grid.scale_heights(0.45);
-    let mut mesh = LinedMesh::default();
-    mesh.push_grid(&grid, &net(8));
-    lined_plot("Saddle", mesh, seen_from(-55.0, 24.0))
+    let saddle = Surface::formula("y^2 - x^2")?.x(-1.0, 1.0).y(-1.0, 1.0).samples(161, 161);
+    let saddle = saddle.aspect(Aspect::Data).z_scale(0.45);
+    let lines = SurfaceLines::default().every(8).silhouette().smoothness_mm(0.0).without_axes();
+    saddle.draw(&View::from_angles(-55.0, 24.0), &lines).title("Saddle").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_saddle", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_saddle.svg")?;
+    sheet.save_png("plots/surface_saddle.png", 1000)
 }

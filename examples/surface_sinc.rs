@@ -1,28 +1,17 @@
 //! A hat: sin r / r.
 
-mod lined_surface;
-mod plots;
-mod viewpoint;
+use hiddenline::{Aspect, Error, Paper, Sheet, Surface, SurfaceLines, View};
 
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::formula::{Formula, Variables};
-use hiddenline::stages::surface::{Grid, LinedMesh};
-
-use lined_surface::{lined_plot, net};
-use plots::{Result, save};
-use viewpoint::seen_from;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let formula = Formula::parse("sinc(r)", Variables::Plane)?;
-    let range = (-12.0, 12.0);
+pub(crate) fn sheet() -> Result<Sheet, Error> {
     // Sampled finely for smooth curves.
-    let mut grid = Grid::sample(&formula, range, range, (241, 241))?;
-    grid.scale_heights(8.0);
-    let mut mesh = LinedMesh::default();
-    mesh.push_grid(&grid, &net(4));
-    lined_plot("Sinc hat", mesh, seen_from(-60.0, 28.0))
+    let hat = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0).samples(241, 241);
+    let hat = hat.aspect(Aspect::Data).z_scale(8.0);
+    let lines = SurfaceLines::default().every(4).silhouette().smoothness_mm(0.0).without_axes();
+    hat.draw(&View::from_angles(-60.0, 28.0), &lines).title("Sinc hat").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_sinc", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_sinc.svg")?;
+    sheet.save_png("plots/surface_sinc.png", 1000)
 }

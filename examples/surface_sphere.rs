@@ -1,33 +1,22 @@
 //! A sphere by meridians and circles of latitude.
 
-mod lined_surface;
-mod parameter_lines;
-mod plots;
-mod viewpoint;
+use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::evenly;
+use glam::dvec3;
+use hiddenline::{Error, Paper, Sheet, Surface, SurfaceLines, View};
 
-use parameter_lines::parametric_plot;
-use plots::{Result, save};
-use viewpoint::seen_from;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let point = |u: f64, v: f64| {
-        let (longitude, latitude) = (u * std::f64::consts::TAU, (v - 0.5) * std::f64::consts::PI);
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let globe = Surface::parametric_fn((0.0, 1.0), (0.0, 1.0), (193, 97), |u, v| {
+        let (longitude, latitude) = (u * TAU, (v - 0.5) * PI);
         let r = libm::cos(latitude);
-        DVec3::new(r * libm::cos(longitude), r * libm::sin(longitude), libm::sin(latitude))
-    };
-    parametric_plot(
-        "Sphere",
-        [193, 97].map(|n| evenly(0.0, 1.0, n)),
-        4,
-        seen_from(-60.0, 25.0),
-        point,
-    )
+        dvec3(r * libm::cos(longitude), r * libm::sin(longitude), libm::sin(latitude))
+    })?;
+    let lines = SurfaceLines::default().every(4).silhouette().smoothness_mm(0.0).without_axes();
+    globe.draw(&View::from_angles(-60.0, 25.0), &lines).title("Sphere").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_sphere", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_sphere.svg")?;
+    sheet.save_png("plots/surface_sphere.png", 1000)
 }

@@ -1,29 +1,21 @@
 //! Spikes that stand in front of each other.
 
-mod lined_surface;
-mod plots;
-mod viewpoint;
+use hiddenline::{Aspect, Error, Paper, Sheet, Surface, SurfaceLines, View};
 
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::formula::{Formula, Variables};
-use hiddenline::stages::surface::{Grid, LinedMesh};
+/// Hills and dents alternate.
+const SPIKES: &str = "max(0, sin(x)*sin(y))^12 + max(0, -sin(x)*sin(y))^3/4";
 
-use lined_surface::{lined_plot, net};
-use plots::{Result, save};
-use viewpoint::seen_from;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let formula =
-        Formula::parse("max(0, sin(x)*sin(y))^12 + max(0, -sin(x)*sin(y))^3/4", Variables::Plane)?;
-    let range = (-9.42477796076938, 9.42477796076938);
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let range = 9.42477796076938;
     // Sampled finely for smooth curves.
-    let mut grid = Grid::sample(&formula, range, range, (301, 301))?;
-    grid.scale_heights(5.0);
-    let mut mesh = LinedMesh::default();
-    mesh.push_grid(&grid, &net(5));
-    lined_plot("Spikes", mesh, seen_from(-65.0, 22.0))
+    let spikes = Surface::formula(SPIKES)?.x(-range, range).y(-range, range).samples(301, 301);
+    let spikes = spikes.aspect(Aspect::Data).z_scale(5.0);
+    let lines = SurfaceLines::default().every(5).silhouette().smoothness_mm(0.0).without_axes();
+    spikes.draw(&View::from_angles(-65.0, 22.0), &lines).title("Spikes").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_spikes", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_spikes.svg")?;
+    sheet.save_png("plots/surface_spikes.png", 1000)
 }

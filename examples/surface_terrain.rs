@@ -1,15 +1,6 @@
 //! A landscape made of smooth noise, finer and lower from octave to octave.
 
-mod lined_surface;
-mod plots;
-mod viewpoint;
-
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::{Grid, LinedMesh, evenly};
-
-use lined_surface::{lined_plot, net};
-use plots::{Result, save};
-use viewpoint::seen_from;
+use hiddenline::{Aspect, Error, Paper, Sheet, Surface, SurfaceLines, View};
 
 /// Cells of the coarsest octave along each axis.
 const CELLS: f64 = 3.0;
@@ -47,16 +38,16 @@ fn height(x: f64, y: f64) -> f64 {
     (0..OCTAVES).map(octave).sum()
 }
 
-pub(crate) fn plot() -> Result<Plot> {
-    let n = 261;
-    let at = evenly(0.0, CELLS, n);
-    let zs = at.iter().flat_map(|&y| at.iter().map(move |&x| 0.42 * height(x, y))).collect();
-    let grid = Grid::new(at.clone(), at, zs)?;
-    let mut mesh = LinedMesh::default();
-    mesh.push_grid(&grid, &net(2));
-    lined_plot("Landscape", mesh, seen_from(-70.0, 36.0))
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let range = (0.0, CELLS);
+    let land = Surface::from_fn(range, range, (261, 261), |x, y| 0.42 * height(x, y))?;
+    let land = land.aspect(Aspect::Data);
+    let lines = SurfaceLines::default().every(2).silhouette().smoothness_mm(0.0).without_axes();
+    land.draw(&View::from_angles(-70.0, 36.0), &lines).title("Landscape").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_terrain", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_terrain.svg")?;
+    sheet.save_png("plots/surface_terrain.png", 1000)
 }

@@ -1,33 +1,22 @@
 //! A torus by its circles; the lines at its folds close it.
 
-mod lined_surface;
-mod parameter_lines;
-mod plots;
-mod viewpoint;
+use std::f64::consts::TAU;
 
-use glam::DVec3;
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::evenly;
+use glam::dvec3;
+use hiddenline::{Error, Paper, Sheet, Surface, SurfaceLines, View};
 
-use parameter_lines::parametric_plot;
-use plots::{Result, save};
-use viewpoint::seen_from;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let point = |u: f64, v: f64| {
-        let (around, across) = (u * std::f64::consts::TAU, v * std::f64::consts::TAU);
+pub(crate) fn sheet() -> Result<Sheet, Error> {
+    let torus = Surface::parametric_fn((0.0, 1.0), (0.0, 1.0), (217, 97), |u, v| {
+        let (around, across) = (u * TAU, v * TAU);
         let r = 3.0 + 1.2 * libm::cos(across);
-        DVec3::new(r * libm::cos(around), r * libm::sin(around), 1.2 * libm::sin(across))
-    };
-    parametric_plot(
-        "Torus",
-        [217, 97].map(|n| evenly(0.0, 1.0, n)),
-        3,
-        seen_from(-60.0, 35.0),
-        point,
-    )
+        dvec3(r * libm::cos(around), r * libm::sin(around), 1.2 * libm::sin(across))
+    })?;
+    let lines = SurfaceLines::default().every(3).silhouette().smoothness_mm(0.0).without_axes();
+    torus.draw(&View::from_angles(-60.0, 35.0), &lines).title("Torus").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_torus", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_torus.svg")?;
+    sheet.save_png("plots/surface_torus.png", 1000)
 }

@@ -1,31 +1,21 @@
 //! A volcano with a crater and gullies down its slopes.
 
-mod lined_surface;
-mod plots;
-mod viewpoint;
+use hiddenline::{Aspect, Error, Paper, Sheet, Surface, SurfaceLines, View};
 
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::surface::formula::{Formula, Variables};
-use hiddenline::stages::surface::{Grid, LinedMesh};
+/// A cone with gullies, less its crater.
+const VOLCANO: &str =
+    "exp(-(r/3.2)^1.5)*(1 + 0.07*sin(13*theta + 2*sin(r))*min(1, r/2)) - 0.75*exp(-(r/0.85)^2)";
 
-use lined_surface::{lined_plot, net};
-use plots::{Result, save};
-use viewpoint::seen_from;
-
-pub(crate) fn plot() -> Result<Plot> {
-    let formula = Formula::parse(
-        "exp(-(r/3.2)^1.5)*(1 + 0.07*sin(13*theta + 2*sin(r))*min(1, r/2)) - 0.75*exp(-(r/0.85)^2)",
-        Variables::Plane,
-    )?;
-    let range = (-6.0, 6.0);
+pub(crate) fn sheet() -> Result<Sheet, Error> {
     // Sampled finely for smooth curves.
-    let mut grid = Grid::sample(&formula, range, range, (301, 301))?;
-    grid.scale_heights(4.2);
-    let mut mesh = LinedMesh::default();
-    mesh.push_grid(&grid, &net(5));
-    lined_plot("Volcano", mesh, seen_from(-50.0, 32.0))
+    let volcano = Surface::formula(VOLCANO)?.x(-6.0, 6.0).y(-6.0, 6.0).samples(301, 301);
+    let volcano = volcano.aspect(Aspect::Data).z_scale(4.2);
+    let lines = SurfaceLines::default().every(5).silhouette().smoothness_mm(0.0).without_axes();
+    volcano.draw(&View::from_angles(-50.0, 32.0), &lines).title("Volcano").on(Paper::A4)
 }
 
-fn main() -> Result<()> {
-    save("surface_volcano", &plot()?)
+fn main() -> Result<(), Error> {
+    let sheet = sheet()?;
+    sheet.save("plots/surface_volcano.svg")?;
+    sheet.save_png("plots/surface_volcano.png", 1000)
 }

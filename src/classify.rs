@@ -166,6 +166,8 @@ pub struct ViewedScene<'a> {
     /// The lines in `drawn` that are drawn only where they are outline.
     only_outline: Vec<u32>,
     near_plane_cuts: bool,
+    /// Whether bends and flush edges that the scene knows make a difference.
+    is_tidied: bool,
     own: Option<&'a ViewSegments>,
 }
 
@@ -176,7 +178,18 @@ impl<'a> ViewedScene<'a> {
     /// An edge is selected by any kind that applies to it, and gets the first that does. Edges whose
     /// image is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
-        Self::with(scene, camera, lines, crease_deg, None)
+        Self::with(scene, camera, lines, crease_deg, true, None)
+    }
+
+    /// The same for the faces exactly as given: bends and flush edges that the scene knows make no
+    /// difference.
+    pub fn as_given(
+        scene: &'a Scene,
+        camera: &Camera,
+        lines: LineSelection,
+        crease_deg: f64,
+    ) -> Self {
+        Self::with(scene, camera, lines, crease_deg, false, None)
     }
 
     /// The same with additional segments, all of which are drawn. They are numbered after the lines of
@@ -188,7 +201,7 @@ impl<'a> ViewedScene<'a> {
         crease_deg: f64,
         segments: &'a ViewSegments,
     ) -> Self {
-        Self::with(scene, camera, lines, crease_deg, Some(segments))
+        Self::with(scene, camera, lines, crease_deg, true, Some(segments))
     }
 
     fn with(
@@ -196,6 +209,7 @@ impl<'a> ViewedScene<'a> {
         camera: &Camera,
         lines: LineSelection,
         crease_deg: f64,
+        is_tidied: bool,
         own: Option<&'a ViewSegments>,
     ) -> Self {
         let positions = scene.mesh().positions();
@@ -233,6 +247,7 @@ impl<'a> ViewedScene<'a> {
             drawn: Vec::new(),
             only_outline: Vec::new(),
             near_plane_cuts,
+            is_tidied,
             own,
         };
         let selected = view.select(lines, crease_deg);
@@ -323,7 +338,7 @@ impl<'a> ViewedScene<'a> {
         self.near_plane_cuts
     }
 
-    /// The edges to draw, each with whether all of it is wanted and not only the outline.
+    /// The edges to draw, each with whether all of it is drawn and not only the outline.
     fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<(SelectedLine, bool)> {
         let n_edges = self.scene.topology().edges().len() as u32;
         let creases = Creases::new(self.scene, lines, crease_deg);
@@ -377,6 +392,7 @@ impl<'a> ViewedScene<'a> {
                 let is_wanted = lines.contains(StrokeKind::Intersection);
                 (is_wanted && !crossing.edges().any(is_drawn)).then_some(StrokeKind::Intersection)
             }
+            LineSource::Bend(_) | LineSource::BoundaryPart(_) if !self.is_tidied => None,
             LineSource::Bend(k) => {
                 let [one, other] = bends[k as usize].triangles.map(is_front);
                 let is_wanted = has_folds || lines.has_outline();
@@ -415,7 +431,7 @@ impl<'a> ViewedScene<'a> {
     /// Which way a face faces along one of its edges: that of its triangle there if the face is known
     /// to be bent.
     fn facing_along(&self, face: u32, edge: u32) -> Sign {
-        if !self.scene.is_bent(face) {
+        if !self.is_tidied || !self.scene.is_bent(face) {
             return self.facing(face);
         }
         let ends = self.scene.topology().edge(edge);
@@ -442,8 +458,8 @@ impl<'a> ViewedScene<'a> {
         let chosen = |kind| (every || lines.contains(kind)).then_some(kind);
         let &[first, second] = topology.uses(edge) else {
             let kind = match topology.uses(edge) {
-                [_] if self.scene.is_split(edge) => return None,
-                [_] if self.scene.is_flush(edge) => StrokeKind::Mesh,
+                [_] if self.is_tidied && self.scene.is_split(edge) => return None,
+                [_] if self.is_tidied && self.scene.is_flush(edge) => StrokeKind::Mesh,
                 [_] => StrokeKind::Boundary,
                 _ => StrokeKind::Nonmanifold,
             };
@@ -504,7 +520,7 @@ impl<'a> ViewedScene<'a> {
 /// Angles may be this much above the threshold, at most, and still count as equal to it.
 const MOST_ANGLE_TOLERANCE_DEG: f64 = 0.5;
 
-/// What it takes to find creases and borders of materials, as far as either is wanted.
+/// What is needed to find creases and borders of materials, if they are drawn.
 struct Creases<'a> {
     /// The crease angle, in radians.
     angle: f64,

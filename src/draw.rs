@@ -39,7 +39,8 @@ pub struct DrawOptions {
     /// each stroke; `None` keeps all.
     pub hidden_levels: Option<u32>,
     /// One two-point stroke for each maximal visible interval of each line: nothing is joined, dropped
-    /// or deduplicated, and contact tolerance and shortest stroke are zero.
+    /// or deduplicated, contact tolerance and shortest stroke are zero, and faces are taken as given:
+    /// bent ones by their mean normals, flush edges as boundaries.
     pub exact: bool,
     /// The line engine.
     pub engine: LineEngine,
@@ -95,13 +96,34 @@ impl DrawOptions {
         Self { hidden, ..self }
     }
 
+    /// Keeps only hidden lines with at most this quantitative invisibility.
+    #[must_use]
+    pub fn hidden_levels(self, levels: u32) -> Self {
+        Self { hidden_levels: Some(levels), ..self }
+    }
+
+    /// A triangle does not cover a segment whose ends are both within this distance of its plane, in
+    /// model units.
+    #[must_use]
+    pub fn contact_tolerance(self, distance: f64) -> Self {
+        Self { contact_tolerance: Some(distance), ..self }
+    }
+
+    /// Drops visible strokes shorter than this, and closes gaps shorter than this, in millimeters on
+    /// paper.
+    #[must_use]
+    pub fn shortest_stroke_mm(self, length_mm: f64) -> Self {
+        Self { shortest_stroke_mm: length_mm, ..self }
+    }
+
     /// Which visible-line algorithm; all give the same drawing.
     #[must_use]
     pub fn engine(self, engine: LineEngine) -> Self {
         Self { engine, ..self }
     }
 
-    /// One two-point stroke for each maximal visible interval, nothing tidied.
+    /// One two-point stroke for each maximal visible interval, nothing tidied. Equal faces must be kept
+    /// when the scene is built: [`SceneBuilder::keep_equal_faces`](crate::SceneBuilder::keep_equal_faces).
     #[must_use]
     pub fn exact(self) -> Self {
         Self { exact: true, ..self }
@@ -185,7 +207,8 @@ impl MeshSize {
 pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: f64) -> DrawOutput {
     let mut seconds = Seconds::default();
     let view = timed(&mut seconds.classify, || {
-        ViewedScene::new(scene, camera, options.lines, options.crease_deg)
+        let of_view = if options.exact { ViewedScene::as_given } else { ViewedScene::new };
+        of_view(scene, camera, options.lines, options.crease_deg)
     });
     let (visibility, counts, engine) =
         timed(&mut seconds.visibility, || solve(&view, options.engine, &options.visibility(scene)));

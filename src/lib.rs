@@ -46,6 +46,20 @@
 //! # Ok::<(), hiddenline::Error>(())
 //! ```
 //!
+//! A [`Surface`] z = f(x, y) or in space is drawn in the same way, from a formula, a function, a file of
+//! heights, or points:
+//!
+//! ```
+//! use hiddenline::{Paper, Surface, SurfaceLines, View};
+//!
+//! let hat = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0);
+//! let drawing = hat.draw(&View::from_angles(-60.0, 28.0), &SurfaceLines::default().silhouette());
+//! # if false {
+//! drawing.on(Paper::A4)?.optimized().save("hat.svg")?;
+//! # }
+//! # Ok::<(), hiddenline::Error>(())
+//! ```
+//!
 //! # How it works
 //!
 //! ```text
@@ -81,12 +95,13 @@
 //! page is placed first: it needs only the `extent` of what is drawn, so lengths on paper are known
 //! before any line is chosen. `predicates` make every decision on the way. `engines::image` finds
 //! the face that each pixel shows; `shading::preview` shades it. To read the code, take the modules
-//! in the order below: no module uses a later one.
+//! in the order of `stages` in `src/lib.rs`: no module uses a later one, and no two files use each
+//! other in a circle. `cargo test --test it laws::layers` checks that.
 //!
 //! # What is exact
 //!
-//! Vertices as read (`f64`) *are* the scene. Every decision — which side, in front or not, front
-//! or back, the order of two cuts — is the sign of a polynomial in those numbers and is decided
+//! Vertices as read (`f64`) *are* the scene. Every decision (which side, in front or behind, front or
+//! back face, the order of two cuts) is the sign of a polynomial in those numbers and is decided
 //! exactly by `predicates`; nothing is compared against a tolerance. Only end points of visible
 //! pieces and image coordinates are rounded, each once. Points where faces cross are not vertices, but
 //! they enter decisions unrounded too.
@@ -148,6 +163,9 @@ use stages::{
     predicates, read, shading, strokes, surface, timing, write,
 };
 
+// Points and vectors, as this crate uses them.
+pub use glam;
+
 // A scene.
 pub use api::{Error, SceneBuilder};
 pub use model::arrange::UpAxis;
@@ -155,15 +173,21 @@ pub use model::mesh::{Mesh, PolygonSoup};
 pub use model::scene::Scene;
 pub use read::ModelFormat;
 
+// A surface.
+pub use axes::Titles;
+pub use draw::surface::{Levels, SurfaceEngine, SurfaceLines, SurfaceNote};
+pub use surface::{Aspect, Grid, HeightField, HeightOptions, Surface};
+
 // A view of it.
 pub use camera::Camera;
 pub use camera::framing::{NamedView, View};
 
 // The lines.
-pub use api::Drawing;
+pub use api::{Drawing, SurfaceDrawing};
 pub use classify::LineSelection;
 pub use draw::DrawOptions;
 pub use engines::edge::LineEngine;
+pub use engines::face::FaceEngine;
 pub use shading::fill::{FillOptions, Palette};
 pub use strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
 

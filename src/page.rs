@@ -69,6 +69,14 @@ pub enum Placement {
 }
 
 /// Paper, margin and placement.
+///
+/// ```
+/// use hiddenline::{PageOptions, Paper};
+///
+/// let poster = PageOptions::from(Paper::A3).landscape().margin_mm(15.0);
+/// // A sheet of any size, and 20 mm on paper for one model unit.
+/// let to_scale = PageOptions::from(Paper::new(200.0, 120.0)).scale(20.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PageOptions {
     /// The sheet.

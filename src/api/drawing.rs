@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::camera::framing::View;
 use crate::draw::{DrawOptions, draw};
 use crate::model::scene::Scene;
-use crate::page::{Page, PageOptions, PenRule, PlotOptions};
+use crate::page::{Dash, Page, PageOptions, PenRule, PlotOptions};
 use crate::shading::fill::{DEFAULT_SEAM_MM, FillOptions, fill};
 use crate::strokes::Strokes;
 
@@ -82,6 +82,12 @@ impl Drawing<'_> {
     /// Which pens draw what; by default one draws the visible lines and one the hidden ones.
     pub fn pens(mut self, pens: impl IntoIterator<Item = PenRule>) -> Self {
         self.plot.pens = pens.into_iter().collect();
+        self
+    }
+
+    /// Lengths of the dashes and gaps of hidden lines; see [`HiddenLines::Dashed`](crate::HiddenLines::Dashed).
+    pub fn dash(mut self, dash: Dash) -> Self {
+        self.plot.dash = dash;
         self
     }
 

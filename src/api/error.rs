@@ -6,10 +6,15 @@ use std::path::PathBuf;
 use thiserror::Error as ThisError;
 
 use crate::camera::framing::ViewError;
+use crate::draw::surface::SurfaceError;
 use crate::model::mesh::MeshError;
 use crate::page::PageError;
 use crate::read::ReadError;
 use crate::shading::fill::FillError;
+#[cfg(feature = "points")]
+use crate::surface::PointsError;
+use crate::surface::formula::FormulaError;
+use crate::surface::{GridError, HeightError};
 use crate::write::WriteError;
 
 /// Why there is no drawing.
@@ -22,6 +27,27 @@ pub enum Error {
     /// The faces make no mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// A text is not a formula.
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    /// The samples of a surface make no grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// No surface goes through the points.
+    #[cfg(feature = "points")]
+    #[error(transparent)]
+    Points(#[from] PointsError),
+    /// A file of heights cannot be read.
+    #[error("{}: {error}", path.display())]
+    Heights {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: HeightError,
+    },
+    /// The surface cannot be drawn.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
     /// The view makes no camera.
     #[error(transparent)]
     View(#[from] ViewError),
@@ -41,6 +67,14 @@ pub enum Error {
         path: PathBuf,
         /// Why.
         error: WriteError,
+    },
+    /// The file cannot be opened.
+    #[error("cannot read {}: {error}", path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
     },
     /// The file cannot be written.
     #[error("cannot write {}: {error}", path.display())]

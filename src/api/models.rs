@@ -85,6 +85,7 @@ impl Scene {
 pub struct SceneBuilder {
     up_axis: Option<UpAxis>,
     weld_distance: f64,
+    keeps_equal_faces: bool,
     /// Millimeters in a unit of the scene, once a model says so.
     unit_mm: Option<f64>,
     /// Each model, its place, and its format if it came in one.
@@ -102,6 +103,12 @@ impl SceneBuilder {
     /// Merges vertices closer together than `distance`, in model units.
     pub fn weld(mut self, distance: f64) -> Self {
         self.weld_distance = distance;
+        self
+    }
+
+    /// Keeps all of several equal faces, for exact drawings. Unless set, one of them is left.
+    pub fn keep_equal_faces(mut self) -> Self {
+        self.keeps_equal_faces = true;
         self
     }
 
@@ -174,7 +181,7 @@ impl SceneBuilder {
     /// # Errors
     /// A coordinate becomes infinite, or there are too many faces for one mesh.
     pub fn build(self) -> Result<Scene, Error> {
-        let Self { up_axis, weld_distance, models, .. } = self;
+        let Self { up_axis, weld_distance, keeps_equal_faces, models, .. } = self;
         let upright = |(mesh, pose, format): (Mesh, Pose, Option<ModelFormat>)| {
             let up_axis = match format {
                 Some(format) => format.up_axis_as_read(up_axis),
@@ -182,7 +189,7 @@ impl SceneBuilder {
             };
             (mesh, Pose { up_axis, ..pose })
         };
-        let arrangement = Arrangement { weld_distance, merge_equal_faces: true };
+        let arrangement = Arrangement { weld_distance, merge_equal_faces: !keeps_equal_faces };
         Ok(complete(arrangement.arrange(models.into_iter().map(upright).collect())?.0))
     }
 }

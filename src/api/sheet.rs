@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::Error;
+use crate::draw::surface::SurfaceNote;
 use crate::optimize::{OptimizeOptions, optimize};
 use crate::page::PlacedPlot;
 use crate::plot::Plot;
@@ -15,11 +16,16 @@ use crate::write::{Format, Target, WriteError, write};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     placed: PlacedPlot,
+    notes: Vec<SurfaceNote>,
 }
 
 impl Sheet {
     pub(super) fn new(placed: PlacedPlot) -> Self {
-        Self { placed }
+        Self { placed, notes: Vec::new() }
+    }
+
+    pub(super) fn with_notes(self, notes: Vec<SurfaceNote>) -> Self {
+        Self { notes, ..self }
     }
 
     /// The strokes of each pen, in millimeters from the upper left corner, y down.
@@ -35,6 +41,12 @@ impl Sheet {
     /// Whether lines were cut off at the margins.
     pub fn is_cropped(&self) -> bool {
         self.placed.cropped
+    }
+
+    /// What is worth knowing about the drawing of a surface: for example, that its lines are farther
+    /// from the function than they should be.
+    pub fn notes(&self) -> &[SurfaceNote] {
+        &self.notes
     }
 
     /// Joins strokes, draws doubled ink once, and orders the strokes of each pen for short pen-up
@@ -72,7 +84,7 @@ impl Sheet {
         self.save_as(path, &Target::usual(format).map_err(failed)?)
     }
 
-    /// Writes a picture of the page, so many pixels wide.
+    /// Writes a picture of the page, `width_px` pixels wide.
     ///
     /// # Errors
     /// As for [`save_as`](Self::save_as).
@@ -81,8 +93,8 @@ impl Sheet {
         self.save_as(path, &Target::Png(Resolution::WidthPx(width_px), Marks::default()))
     }
 
-    /// Writes a file of any format, for any machine. An existing file is replaced only when all is
-    /// written.
+    /// Writes a file of any format, for any machine (see [`Target`]). An existing file is replaced only
+    /// when all is written.
     ///
     /// # Errors
     /// The plot does not suit the target, or the file cannot be written.

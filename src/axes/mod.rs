@@ -35,6 +35,13 @@ pub struct Titles {
     pub drawing: String,
 }
 
+impl Titles {
+    /// The usual titles of the axes, and one above the drawing.
+    pub fn of_drawing(title: impl Into<String>) -> Self {
+        Self { drawing: title.into(), ..Self::default() }
+    }
+}
+
 impl Default for Titles {
     fn default() -> Self {
         Self { axes: ["x", "y", "z"].map(str::to_owned), drawing: String::new() }
@@ -76,10 +83,7 @@ type Layout = (Vec<Laid>, (DVec2, DVec2), f64);
 fn lay(bounds: (DVec3, DVec3), z_factor: f64, camera: &Camera, titles: &Titles) -> Option<Layout> {
     let bbox = BoundingBox { low: bounds.0, high: bounds.1, camera };
     let corners = (0..8).map(|k| bbox.corner([k & 1, k >> 1 & 1, k >> 2 & 1].map(|b| b == 1)));
-    let near = match camera.projection() {
-        Projection::Perspective { near, .. } => near * camera.forward().length(),
-        Projection::Orthographic => f64::NEG_INFINITY,
-    };
+    let near = camera.near_distance().unwrap_or(f64::NEG_INFINITY);
     let forward = camera.frame().forward;
     let corners: Vec<DVec3> = corners.collect();
     let depth = |p: &DVec3| (*p - camera.eye()).dot(forward);

@@ -18,13 +18,13 @@ use crate::timing::{Seconds, timed};
 pub struct MeshedOptions {
     /// Which mesh engine; [`LineEngine::Auto`] first tries [`tin`].
     pub engine: LineEngine,
-    /// Edges between a front and a back triangle, too. They run along sides of triangles, so a
+    /// Also edges between a front and a back triangle. They run along sides of triangles, so a
     /// fold of a smooth surface comes out as a zigzag within one row of cells, which is as narrow
     /// as the samples are close.
     pub folds: bool,
-    /// Edges with only one triangle, too.
+    /// Also edges with only one triangle.
     pub border: bool,
-    /// Lines in which sheets cross, too, as far as the scene knows them, and edges that they share
+    /// Also lines in which sheets cross, as far as the scene knows them, and edges that they share
     /// there; see [`Scene::with_intersections`](crate::model::scene::Scene::with_intersections).
     pub intersections: bool,
     /// One two-point stroke for each maximal visible interval of each edge.

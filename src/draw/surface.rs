@@ -34,15 +34,15 @@ use crate::timing::{Seconds, timed};
 /// More of the paper covered with lines than this looks like a sheet of ink.
 const CROWDED: f64 = 0.5;
 
-/// How much of the paper is covered by lines that are easily told apart.
+/// How much of the paper is covered if lines are easy to distinguish.
 const WELL_COVERED: f64 = 0.25;
 
-/// Drawings with at most so many points are joined again in a moment.
+/// Drawings with at most this many points are joined and ordered again in no time.
 const FEW_POINTS: usize = 12_000;
 
 /// A drawing of a surface, with the page that it was drawn for.
 #[derive(Debug, Clone)]
-pub struct SurfaceDrawing {
+pub struct SurfaceOutput {
     /// The strokes, with the axes, and what drawing counted.
     pub drawn: DrawOutput,
     /// How large the mesh is that was drawn.
@@ -66,7 +66,7 @@ pub struct SurfaceDrawing {
 /// How much of the image grid lines cover, without axes.
 #[derive(Debug, Clone, Copy, Default)]
 struct Ink {
-    /// Every so many-th line of the surface's own samples is drawn; 0 if no families of grid lines are.
+    /// Every n-th line of the surface's own samples is drawn; 0 if no grid lines are.
     every: usize,
     /// Sum of the lengths of all strokes, in millimeters.
     length_mm: f64,
@@ -98,7 +98,7 @@ pub fn draw_surface(
     view: &View,
     lines: &SurfaceLines,
     page: &PageOptions,
-) -> Result<SurfaceDrawing, SurfaceError> {
+) -> Result<SurfaceOutput, SurfaceError> {
     let mut seconds = Seconds::default();
     let SmoothSurface { surface, camera, refined, deviation_mm } =
         timed(&mut seconds.read, || sample(surface, view, lines, page))?;
@@ -160,16 +160,16 @@ pub fn draw_surface(
     let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
     let is_ordered = grid.is_some() && !is_edge_on && drawing.n_points() > FEW_POINTS;
     let samples = surface.to_string();
-    Ok(SurfaceDrawing { drawn, size, camera, page, extent, samples, notes, is_ordered, ink })
+    Ok(SurfaceOutput { drawn, size, camera, page, extent, samples, notes, is_ordered, ink })
 }
 
-impl SurfaceDrawing {
+impl SurfaceOutput {
     /// Whether lines are so close that they flow into each other when drawn with a pen of this width:
-    /// then what [`SurfaceLines::every`] should be to tell them apart.
+    /// then what [`SurfaceLines::every`] should be to keep them apart.
     pub fn crowded(&self, pen_width_mm: f64) -> Option<usize> {
         let Ink { every, length_mm, size_mm } = self.ink;
         let covered = length_mm * pen_width_mm / (size_mm.x * size_mm.y);
-        // A flat surface seen edge-on is a line; there is nothing to tell apart.
+        // A flat surface seen edge-on is a line, with nothing to keep apart.
         let is_area = size_mm.min_element() > pen_width_mm;
         (every > 0 && is_area && covered > CROWDED)
             .then(|| (every as f64 * covered / WELL_COVERED).ceil() as usize)

@@ -4,10 +4,10 @@
 //!
 //! ```text
 //!   lines     edges of faces          | other lines: intersections, bends, wires | those of a view
-//!   points    vertices of the mesh    | ends of lines that are no vertices       | those of a view
+//!   points    vertices of the mesh    | ends of lines other than vertices       | those of a view
 //! ```
 //!
-//! A view may add lines and points of its own; see
+//! A view may add its own lines and points; see
 //! [`ViewSegments`](crate::classify::ViewSegments).
 
 use crate::camera::Camera;
@@ -64,7 +64,7 @@ impl Dihedral {
 }
 
 /// A mesh with everything about it that does not depend on the view.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct Scene {
     mesh: Mesh,
     topology: Topology,
@@ -194,7 +194,7 @@ impl Scene {
         &self.flush_edges.parts
     }
 
-    /// Whether the parts of an edge are lines of their own, in place of the whole.
+    /// Whether an edge is split: its parts are lines, in place of the whole.
     /// O(log boundary parts).
     pub fn is_split(&self, edge: u32) -> bool {
         self.flush_edges.parts.binary_search_by_key(&edge, |part| part.edge).is_ok()

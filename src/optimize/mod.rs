@@ -113,6 +113,30 @@ impl OptimizeOptions {
         Self { join_tolerance_mm: Some(0.0), overlap_mm: OVERLAP_MM, ..Self::default() }
     }
 
+    /// How long to search for a better stroke order.
+    #[must_use]
+    pub fn effort(self, effort: Effort) -> Self {
+        Self { effort, ..self }
+    }
+
+    /// Joins ends at most this far apart, in millimeters.
+    #[must_use]
+    pub fn join_tolerance_mm(self, tolerance_mm: f64) -> Self {
+        Self { join_tolerance_mm: Some(tolerance_mm), ..self }
+    }
+
+    /// Draws ink at most this far from other ink of the same pen only once, in millimeters.
+    #[must_use]
+    pub fn overlap_mm(self, overlap_mm: f64) -> Self {
+        Self { overlap_mm, ..self }
+    }
+
+    /// Removes points at most this far from the simplified stroke, in millimeters.
+    #[must_use]
+    pub fn simplify_mm(self, simplify_mm: f64) -> Self {
+        Self { simplify_mm, ..self }
+    }
+
     /// Whether strokes stay as they are, but for points on straight lines.
     pub fn is_idle(&self) -> bool {
         self.join_tolerance_mm.is_none()

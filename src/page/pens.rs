@@ -11,11 +11,11 @@ use super::PlotOptions;
 /// Strokes that a pen can be given for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PenRole {
-    /// Visible strokes of all kinds that have no rule of their own.
+    /// Visible strokes of all kinds without their own rule.
     Visible,
-    /// Hidden strokes of all levels that have no rule of their own.
+    /// Hidden strokes of all levels without their own rule.
     Hidden,
-    /// Hidden strokes that are covered so often.
+    /// Hidden strokes with this quantitative invisibility.
     HiddenLevel(u32),
     /// Strokes of the outline.
     Outline,
@@ -54,11 +54,42 @@ pub struct PenRule {
     pub number: u32,
     /// The pen.
     pub pen: Pen,
-    /// What AxiDraw's software is told about it.
+    /// Instructions for AxiDraw's software.
     pub controls: LayerControls,
 }
 
-/// What the label of a layer tells AxiDraw's software about it.
+impl PenRule {
+    /// What pen `number`, 1 or more, draws; a fine pen in the default color of its number.
+    ///
+    /// ```
+    /// use hiddenline::{PenRole, PenRule, StrokeKind};
+    ///
+    /// let pens = [
+    ///     PenRule::new(PenRole::Visible, 1),
+    ///     PenRule::new(PenRole::Kind(StrokeKind::Silhouette), 2).width_mm(0.7).color("#202020"),
+    /// ];
+    /// ```
+    pub fn new(drawn: PenRole, number: u32) -> Self {
+        let pen = Pen { color: default_pen_color(number).to_owned(), ..Pen::default() };
+        Self { drawn, number, pen, controls: LayerControls::default() }
+    }
+
+    /// The width of its line, in millimeters.
+    #[must_use]
+    pub fn width_mm(mut self, width_mm: f64) -> Self {
+        self.pen.width_mm = width_mm;
+        self
+    }
+
+    /// Its color, as `#rrggbb`.
+    #[must_use]
+    pub fn color(mut self, color: impl Into<String>) -> Self {
+        self.pen.color = color.into();
+        self
+    }
+}
+
+/// Instructions for AxiDraw's software in the label of a layer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LayerControls {
     /// Whether it pauses before the layer, to change the pen.
@@ -93,10 +124,11 @@ impl LayerControls {
 const PALETTE: [&str; 8] =
     ["#000000", "#808080", "#c00000", "#0000c0", "#008000", "#c06000", "#8000a0", "#0090a0"];
 
-/// Nearly black: programs that tell pens by color take it for another one than the visible lines'.
+/// Nearly black: programs that distinguish pens by color take it for a pen other than that of the visible
+/// lines.
 const OUTLINE_COLOR: &str = "#101010";
 
-/// Blue: easily told from the black of upper sides, by people and by programs.
+/// Blue: easy to distinguish from the black of upper sides, for people and for programs.
 const UNDERSIDE_COLOR: &str = "#0000c0";
 
 /// The color of pen `number`, counted from 1, unless it is given another one.

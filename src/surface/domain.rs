@@ -1,8 +1,8 @@
 //! Surfaces over a part of the plane: a grid cut off where a formula stops being true.
 //!
 //! ```text
-//!   ○────○────○        ● inside   ○ outside   × rim: the last place inside on each edge of a
-//!   │  ╱ │  ╱ │          triangle that leaves the domain, found by halving it
+//!   ○────○────○        ● inside   ○ outside   × rim: the last point inside on each edge of a
+//!   │  ╱ │  ╱ │          triangle that leaves the domain, found by bisection
 //!   ×╌╌╌╌×  ╱ │
 //!   │  ╱ │╲ ╱ │        Triangles are cut along the rim, whose points are shared by the triangles
 //!   ●────●─×──○        on both sides of an edge, so that the surface has no cracks. The height
@@ -22,7 +22,7 @@ use crate::surface::formula::Formula;
 /// that does not begin at the origin.
 const HALVINGS: u32 = 60;
 
-/// A grid over a domain with a smooth rim: where the domain ends is found by halving.
+/// A grid over a domain with a smooth rim: the border of the domain is found by bisection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrimmedGrid {
     /// Samples outside of the domain are holes.
@@ -186,7 +186,7 @@ impl LinedMesh {
         let mut numbers = FxHashMap::default();
         for edge in edges {
             let p = rim[&edge];
-            // A rim that runs through the very sample has no point of its own there.
+            // A rim that runs exactly through a sample adds no point there.
             let number = if p == grid.point(edge[0]) {
                 base + edge[0]
             } else {

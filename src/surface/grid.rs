@@ -13,7 +13,7 @@ pub const MAX_SAMPLES: usize = 100_000_000;
 ///
 /// ```text
 ///   y ▲   (i,j+1)──(i+1,j+1)        The surface is triangulated: each cell is cut along
-///     │      │    ╱    │            (i,j)–(i+1,j+1). Sample (i,j) stands at (xs[i], ys[j]).
+///     │      │    ╱    │            (i,j)–(i+1,j+1). Sample (i,j) is at (xs[i], ys[j]).
 ///     │      │  ╱      │            A height that is not a number is a hole: the cells
 ///     │    (i,j)────(i+1,j)         around it are no part of the surface.
 ///     └──────────────────► x
@@ -38,7 +38,7 @@ impl Heights {
     const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, n_holes: 0 };
 
     fn of(zs: &[f64]) -> Self {
-        // `min` and `max` pass over what is not a number.
+        // `min` and `max` ignore NaN.
         let add = |all: Self, z: &f64| Self {
             low: all.low.min(*z),
             high: all.high.max(*z),
@@ -123,6 +123,38 @@ pub fn evenly(from: f64, to: f64, n: usize) -> Vec<f64> {
     (0..n).map(|i| from + (to - from) * i as f64 / last).collect()
 }
 
+/// Evenly spaced values of the two parameters of a surface in space.
+pub(super) fn parameters(
+    u: (f64, f64),
+    v: (f64, f64),
+    samples: (usize, usize),
+) -> Result<(Vec<f64>, Vec<f64>), GridError> {
+    for (axis, found) in [('u', samples.0), ('v', samples.1)] {
+        if found < 2 {
+            return Err(GridError::TooFew { axis, found });
+        }
+    }
+    if samples.0.checked_mul(samples.1).is_none_or(|n| n > MAX_SAMPLES) {
+        return Err(GridError::TooMany { x: samples.0, y: samples.1 });
+    }
+    Ok((evenly(u.0, u.1, samples.0), evenly(v.0, v.1, samples.1)))
+}
+
+/// The x and y of evenly spaced lines.
+fn even_lines(
+    x: (f64, f64),
+    y: (f64, f64),
+    n: (usize, usize),
+) -> Result<(Vec<f64>, Vec<f64>), GridError> {
+    check_size(n.0, n.1)?;
+    for (axis, (from, to)) in [('x', x), ('y', y)] {
+        if !(from < to && from.is_finite() && (to - from).is_finite()) {
+            return Err(GridError::Range { axis, from, to });
+        }
+    }
+    Ok((evenly(x.0, x.1, n.0), evenly(y.0, y.1, n.1)))
+}
+
 impl Grid {
     /// A grid with given lines; `zs` holds the heights row by row, the row of `ys[0]` first.
     /// Heights that are not finite become holes; −0 becomes 0.
@@ -162,17 +194,30 @@ impl Grid {
         y: (f64, f64),
         n: (usize, usize),
     ) -> Result<Self, GridError> {
-        check_size(n.0, n.1)?;
-        for (axis, (from, to)) in [('x', x), ('y', y)] {
-            if !(from < to && from.is_finite() && (to - from).is_finite()) {
-                return Err(GridError::Range { axis, from, to });
-            }
-        }
-        let (xs, ys) = (evenly(x.0, x.1, n.0), evenly(y.0, y.1, n.1));
+        let (xs, ys) = even_lines(x, y, n)?;
         let mut zs = vec![0.0; n.0 * n.1];
         zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
             formula.values(&xs, &vec![y; xs.len()], row);
         });
+        Self::new(xs, ys, zs)
+    }
+
+    /// Samples a function on `n` = (along x, along y) evenly spaced lines; a height that is not finite
+    /// is a hole.
+    ///
+    /// # Errors
+    /// As [`sample`](Self::sample).
+    pub fn from_fn(
+        x: (f64, f64),
+        y: (f64, f64),
+        n: (usize, usize),
+        z: impl Fn(f64, f64) -> f64,
+    ) -> Result<Self, GridError> {
+        let (xs, ys) = even_lines(x, y, n)?;
+        let mut zs = Vec::with_capacity(n.0 * n.1);
+        for &y in &ys {
+            zs.extend(xs.iter().map(|&x| z(x, y)));
+        }
         Self::new(xs, ys, zs)
     }
 

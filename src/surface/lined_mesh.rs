@@ -9,9 +9,9 @@ use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
 use crate::model::scene::Scene;
 use crate::strokes::StrokeKind;
 
-/// Points on the border of a parametric surface that are closer than this part of its largest
-/// coordinate are one point, so that a torus closes although sin 2π is rounded. Smaller, and seams
-/// stay open; larger, and narrow slits close.
+/// Points on the border of a parametric surface that are closer than this fraction of its largest
+/// coordinate are one point, so that a torus closes although sin 2π is rounded. If it is smaller, seams
+/// stay open; if larger, narrow slits close.
 pub const SEAM_TOLERANCE: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// Triangles that hide, and lines along their edges that are drawn. Triangles without a line along
@@ -45,12 +45,12 @@ pub struct LatticeLines {
     pub triangles: bool,
 }
 
-/// A [`LinedMesh`] made ready for any number of views.
-#[derive(Debug, Clone, PartialEq)]
+/// A [`LinedMesh`] prepared for any number of views.
+#[derive(Debug, Clone)]
 pub struct LinedScene {
     /// The triangles.
     pub scene: Scene,
-    /// The edges that lie on a line.
+    /// The edges that are on a line.
     pub lines: Vec<SelectedLine>,
 }
 
@@ -127,8 +127,8 @@ impl LinedMesh {
         }
     }
 
-    /// Adds triangles over points of their own, with lines of kind mesh along all of their edges
-    /// if `is_lined`.
+    /// Adds triangles with their own points, and with lines of kind mesh along all of their edges if
+    /// `is_lined`.
     pub fn push_triangles(&mut self, points: &[DVec3], triangles: &[[u32; 3]], is_lined: bool) {
         let base = self.positions.len() as u32;
         // Vertices that no triangle uses are dropped later; they only have to be finite until then.
@@ -155,7 +155,7 @@ impl LinedMesh {
         self.triangles.len()
     }
 
-    /// The triangles alone, with vertices at the same place made one.
+    /// The triangles alone, with equal vertices merged.
     ///
     /// # Errors
     /// Coordinates that are not finite, or more than a mesh can have.
@@ -167,7 +167,7 @@ impl LinedMesh {
         Ok(Mesh::new(soup)?.0)
     }
 
-    /// Makes vertices at the same place one and finds the edges that lie on lines.
+    /// Merges equal vertices and finds the edges that are on lines.
     ///
     /// # Errors
     /// Coordinates that are not finite, or more than a mesh can have.
@@ -223,9 +223,9 @@ fn split_point([a, b, c, d]: [DVec3; 4], levels: &[f64]) -> Option<DVec3> {
     (patch.is_finite() && (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then_some(patch)
 }
 
-/// Makes border points of a lattice that nearly coincide equal, within [`SEAM_TOLERANCE`].
+/// Makes border points of a lattice equal if they nearly coincide, within [`SEAM_TOLERANCE`].
 ///
-/// The first of such points, in the order of the lattice, stands for all. O(border²) at worst, for
+/// The first of such points, in the order of the lattice, replaces them all. O(border²) at worst, for
 /// a border whose points all have the same x; O(border log border) usually.
 pub fn close_seams(n_columns: usize, points: &mut [DVec3]) {
     let n_rows = points.len() / n_columns.max(1);

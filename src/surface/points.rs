@@ -33,6 +33,21 @@ pub enum Duplicates {
     Max,
 }
 
+impl Duplicates {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 4] = [Self::Error, Self::First, Self::Mean, Self::Max];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::First => "first",
+            Self::Mean => "mean",
+            Self::Max => "max",
+        }
+    }
+}
+
 /// Why a text of points makes no surface.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PointsError {

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::domain::TrimmedGrid;
 use super::formula::Formula;
-use super::grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
+use super::grid::{Grid, GridError, Holes, parameters};
 use super::lattice_extent::lattice_extent;
 use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
 use super::source::{Aspect, Source, Surface};
@@ -54,12 +54,12 @@ pub enum SamplingError {
 /// A surface sampled at points. Its [`Display`](fmt::Display) says how many, for messages.
 #[derive(Debug, Clone)]
 pub struct SampledSurface {
-    sheets: Sheets,
+    sheets: Samples,
     z_factor: f64,
 }
 
 #[derive(Debug, Clone)]
-enum Sheets {
+enum Samples {
     /// One or more, over the same x and y.
     Grids(Vec<Grid>),
     /// One or more, each over a part of the plane. `n_joined` rim points of two sheets were moved to
@@ -113,14 +113,17 @@ impl Surface {
             Source::Formulas { formulas, domain: Some(domain) } => {
                 let grids = self.trimmed(formulas, Some(domain), n)?;
                 if grids.iter().all(TrimmedGrid::is_whole) {
-                    Sheets::Grids(grids.iter().map(|g| g.grid().clone()).collect())
+                    Samples::Grids(grids.iter().map(|g| g.grid().clone()).collect())
                 } else {
                     joined_at_rim(grids)
                 }
             }
-            Source::Grid(grid) => Sheets::Grids(vec![grid.clone()]),
+            Source::Grid(grid) => Samples::Grids(vec![grid.clone()]),
             Source::Triangles { points, triangles } => {
-                Sheets::Triangles { points: points.clone(), triangles: triangles.clone() }
+                Samples::Triangles { points: points.clone(), triangles: triangles.clone() }
+            }
+            Source::Lattice { n_columns, points } => {
+                Samples::Lattice { n_columns: *n_columns, points: points.clone() }
             }
             Source::Parametric { formulas, u, v } => lattice(formulas, *u, *v, n)?,
         };
@@ -143,8 +146,12 @@ impl Surface {
         Ok(surface)
     }
 
-    /// Sheets wherever their formulas have values; two that end at the same rim are joined there.
-    fn everywhere(&self, formulas: &[Formula], n: (usize, usize)) -> Result<Sheets, SamplingError> {
+    /// Samples wherever their formulas have values; two that end at the same rim are joined there.
+    fn everywhere(
+        &self,
+        formulas: &[Formula],
+        n: (usize, usize),
+    ) -> Result<Samples, SamplingError> {
         let sample = |formula| Grid::sample(formula, self.x, self.y, n);
         let grids = formulas.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         if grids.len() == 2 && grids.iter().any(|grid| grid.holes() != Holes::None) {
@@ -155,7 +162,7 @@ impl Surface {
                 return Ok(joined_at_rim(trimmed));
             }
         }
-        Ok(Sheets::Grids(grids))
+        Ok(Samples::Grids(grids))
     }
 
     fn trimmed(
@@ -181,18 +188,10 @@ fn lattice(
     u: (f64, f64),
     v: (f64, f64),
     n: (usize, usize),
-) -> Result<Sheets, GridError> {
-    for (axis, found) in [('u', n.0), ('v', n.1)] {
-        if found < 2 {
-            return Err(GridError::TooFew { axis, found });
-        }
-    }
-    if n.0.checked_mul(n.1).is_none_or(|n| n > MAX_SAMPLES) {
-        return Err(GridError::TooMany { x: n.0, y: n.1 });
-    }
-    let us = evenly(u.0, u.1, n.0);
+) -> Result<Samples, GridError> {
+    let (us, vs) = parameters(u, v, n)?;
     let mut points = Vec::with_capacity(n.0 * n.1);
-    for v in evenly(v.0, v.1, n.1) {
+    for v in vs {
         let mut rows = [(); 3].map(|()| vec![0.0; us.len()]);
         for (formula, row) in formulas.iter().zip(&mut rows) {
             formula.values(&us, &vec![v; us.len()], row);
@@ -200,17 +199,17 @@ fn lattice(
         points.extend((0..us.len()).map(|i| DVec3::new(rows[0][i], rows[1][i], rows[2][i])));
     }
     close_seams(us.len(), &mut points);
-    Ok(Sheets::Lattice { n_columns: us.len(), points })
+    Ok(Samples::Lattice { n_columns: us.len(), points })
 }
 
-/// Sheets whose rims meet up to rounding are joined there if there are two of them.
-fn joined_at_rim(mut grids: Vec<TrimmedGrid>) -> Sheets {
+/// Samples whose rims meet up to rounding are joined there if there are two of them.
+fn joined_at_rim(mut grids: Vec<TrimmedGrid>) -> Samples {
     let tolerance = rim_tolerance(&grids);
     let n_joined = match &mut grids[..] {
         [one, other] => one.meet_at_rim(other, tolerance),
         _ => 0,
     };
-    Sheets::Trimmed { grids, n_joined }
+    Samples::Trimmed { grids, n_joined }
 }
 
 fn rim_tolerance(grids: &[TrimmedGrid]) -> f64 {
@@ -231,7 +230,7 @@ impl SampledSurface {
         let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mut add = |p: DVec3| bounds = (bounds.0.min(p), bounds.1.max(p));
         match &self.sheets {
-            Sheets::Grids(grids) => {
+            Samples::Grids(grids) => {
                 for grid in grids {
                     let (xs, ys) = (grid.xs(), grid.ys());
                     if let Some((low, high)) = grid.heights() {
@@ -240,7 +239,7 @@ impl SampledSurface {
                     }
                 }
             }
-            Sheets::Trimmed { grids, .. } => {
+            Samples::Trimmed { grids, .. } => {
                 for trimmed in grids {
                     let grid = trimmed.grid();
                     let n = grid.zs().len() as u32;
@@ -248,7 +247,7 @@ impl SampledSurface {
                     inside.chain(trimmed.rim()).for_each(&mut add);
                 }
             }
-            Sheets::Triangles { points, .. } | Sheets::Lattice { points, .. } => {
+            Samples::Triangles { points, .. } | Samples::Lattice { points, .. } => {
                 points.iter().filter(|p| p.is_finite()).for_each(|p| add(*p));
             }
         }
@@ -265,11 +264,11 @@ impl SampledSurface {
 
     fn scale_heights(&mut self, factor: f64) {
         match &mut self.sheets {
-            Sheets::Grids(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
-            Sheets::Trimmed { grids, .. } => {
+            Samples::Grids(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
+            Samples::Trimmed { grids, .. } => {
                 grids.iter_mut().for_each(|grid| grid.scale_heights(factor));
             }
-            Sheets::Triangles { points, .. } | Sheets::Lattice { points, .. } => {
+            Samples::Triangles { points, .. } | Samples::Lattice { points, .. } => {
                 points.iter_mut().for_each(|p| p.z *= factor);
             }
         }
@@ -282,14 +281,14 @@ impl SampledSurface {
     pub fn lined(&self, lines: &LatticeLines, levels: &[f64]) -> LinedMesh {
         let mut mesh = LinedMesh::for_levels(levels);
         match &self.sheets {
-            Sheets::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, lines)),
-            Sheets::Trimmed { grids, .. } => {
+            Samples::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, lines)),
+            Samples::Trimmed { grids, .. } => {
                 grids.iter().for_each(|grid| mesh.push_trimmed(grid, lines));
             }
-            Sheets::Triangles { points, triangles } => {
+            Samples::Triangles { points, triangles } => {
                 mesh.push_triangles(points, triangles, lines.triangles);
             }
-            Sheets::Lattice { n_columns, points } => mesh.push_lattice(*n_columns, points, lines),
+            Samples::Lattice { n_columns, points } => mesh.push_lattice(*n_columns, points, lines),
         }
         mesh
     }
@@ -301,20 +300,20 @@ impl SampledSurface {
             Lattice { n_columns: grid.xs().len(), n_samples: grid.zs().len(), sample }
         }
         match &self.sheets {
-            Sheets::Grids(grids) => grids.iter().map(of).collect(),
-            Sheets::Trimmed { grids, .. } => grids.iter().map(|g| of(g.grid())).collect(),
-            Sheets::Lattice { n_columns, points } => {
+            Samples::Grids(grids) => grids.iter().map(of).collect(),
+            Samples::Trimmed { grids, .. } => grids.iter().map(|g| of(g.grid())).collect(),
+            Samples::Lattice { n_columns, points } => {
                 let sample = Box::new(|k: usize| points[k]);
                 vec![Lattice { n_columns: *n_columns, n_samples: points.len(), sample }]
             }
-            Sheets::Triangles { .. } => Vec::new(),
+            Samples::Triangles { .. } => Vec::new(),
         }
     }
 
     /// The sheets, if they are whole grids over rectangles; otherwise none.
     pub fn grids(&self) -> &[Grid] {
         match &self.sheets {
-            Sheets::Grids(grids) => grids,
+            Samples::Grids(grids) => grids,
             _ => &[],
         }
     }
@@ -322,7 +321,7 @@ impl SampledSurface {
     /// How many points on the rim of two sheets were moved to their mean height.
     pub fn n_rim_points_joined(&self) -> usize {
         match self.sheets {
-            Sheets::Trimmed { n_joined, .. } => n_joined,
+            Samples::Trimmed { n_joined, .. } => n_joined,
             _ => 0,
         }
     }
@@ -336,14 +335,14 @@ impl fmt::Display for SampledSurface {
             })
         };
         match &self.sheets {
-            Sheets::Grids(grids) => write!(f, "{}", size(grids.first())),
-            Sheets::Trimmed { grids, .. } => {
+            Samples::Grids(grids) => write!(f, "{}", size(grids.first())),
+            Samples::Trimmed { grids, .. } => {
                 write!(f, "{}", size(grids.first().map(TrimmedGrid::grid)))
             }
-            Sheets::Triangles { points, triangles } => {
+            Samples::Triangles { points, triangles } => {
                 write!(f, "{} points, {} triangles", points.len(), triangles.len())
             }
-            Sheets::Lattice { n_columns, points } => {
+            Samples::Lattice { n_columns, points } => {
                 write!(f, "{n_columns} × {} samples", points.len() / n_columns)
             }
         }

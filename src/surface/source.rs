@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::formula::{Formula, FormulaError, Variables};
-use super::grid::Grid;
+use super::grid::{Grid, GridError, parameters};
+use super::lined_mesh::close_seams;
 #[cfg(feature = "points")]
 use super::points::{PointsError, delaunay};
 use crate::model::mesh::MeshError;
@@ -18,7 +19,7 @@ pub const DEFAULT_SAMPLES: usize = 81;
 /// parametric surface in space.
 ///
 /// ```
-/// use hiddenline::stages::surface::{Grid, Surface};
+/// use hiddenline::{Grid, Surface};
 ///
 /// let hat = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0).samples(101, 101);
 /// assert_eq!(hat.sample(1)?.to_string(), "101 × 101 samples");
@@ -58,6 +59,11 @@ pub(super) enum Source {
         points: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
     },
+    /// Points in space, row by row.
+    Lattice {
+        n_columns: usize,
+        points: Vec<DVec3>,
+    },
     /// Formulas of x, y and z, and the ranges of u and v.
     Parametric {
         formulas: [Formula; 3],
@@ -74,6 +80,19 @@ pub enum Aspect {
     Box,
     /// As they are.
     Data,
+}
+
+impl Aspect {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Box, Self::Data];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Box => "box",
+            Self::Data => "data",
+        }
+    }
 }
 
 impl Surface {
@@ -93,6 +112,59 @@ impl Surface {
     /// A grid of heights.
     pub fn grid(grid: Grid) -> Self {
         Self::new(Source::Grid(grid), Aspect::Box)
+    }
+
+    /// The heights `z(x, y)` over a rectangle, at `samples` points along x and along y. A height that
+    /// is not finite is a hole.
+    ///
+    /// ```
+    /// use hiddenline::Surface;
+    ///
+    /// let saddle = Surface::from_fn((-1.0, 1.0), (-1.0, 1.0), (41, 41), |x, y| x * y)?;
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A range does not go from a smaller to a larger number, or there are too few or too many samples.
+    pub fn from_fn(
+        x: (f64, f64),
+        y: (f64, f64),
+        samples: (usize, usize),
+        z: impl Fn(f64, f64) -> f64,
+    ) -> Result<Self, GridError> {
+        Ok(Self::grid(Grid::from_fn(x, y, samples, z)?))
+    }
+
+    /// A surface in space: the points `point(u, v)`, at `samples` places along u and along v. A point
+    /// that is not finite is a hole. Ends are joined where they meet, and heights are drawn to the
+    /// scale of x and y.
+    ///
+    /// ```
+    /// use glam::dvec3;
+    /// use hiddenline::Surface;
+    ///
+    /// let turn = (0.0, std::f64::consts::TAU);
+    /// let tube = Surface::parametric_fn(turn, (0.0, 2.0), (73, 11), |u: f64, v| {
+    ///     dvec3(u.cos(), u.sin(), v)
+    /// })?;
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// There are too few or too many samples.
+    pub fn parametric_fn(
+        u: (f64, f64),
+        v: (f64, f64),
+        samples: (usize, usize),
+        point: impl Fn(f64, f64) -> DVec3,
+    ) -> Result<Self, GridError> {
+        let (us, vs) = parameters(u, v, samples)?;
+        let mut points = Vec::with_capacity(us.len() * vs.len());
+        for &v in &vs {
+            points.extend(us.iter().map(|&u| point(u, v)));
+        }
+        close_seams(us.len(), &mut points);
+        Ok(Self::new(Source::Lattice { n_columns: us.len(), points }, Aspect::Data))
     }
 
     /// The surface through scattered points: their Delaunay triangulation, seen from above.
@@ -217,7 +289,7 @@ impl Surface {
     pub fn samples_of_formulas(&self) -> Option<(usize, usize)> {
         match self.source {
             Source::Formulas { .. } | Source::Parametric { .. } => Some(self.samples),
-            Source::Grid(_) | Source::Triangles { .. } => None,
+            Source::Grid(_) | Source::Triangles { .. } | Source::Lattice { .. } => None,
         }
     }
 }

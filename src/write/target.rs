@@ -52,6 +52,15 @@ pub enum WriteError {
     /// The format has lines only.
     #[error(transparent)]
     NoFills(#[from] NoFills),
+    /// No plotter and no G-code profile has this name.
+    #[cfg(feature = "plotters")]
+    #[error("there is no machine called `{name}`; known are {known}")]
+    UnknownMachine {
+        /// The name asked for.
+        name: String,
+        /// All names.
+        known: String,
+    },
     /// The plot does not suit the plotter.
     #[cfg(feature = "plotters")]
     #[error(transparent)]
@@ -100,6 +109,36 @@ impl Target {
             #[allow(unreachable_patterns, reason = "reached where features are off")]
             format => return Err(WriteError::FormatOff(format)),
         })
+    }
+
+    /// HPGL or G-code for a machine by its name, such as `hp7475a` or `grbl-z`.
+    ///
+    /// # Errors
+    /// [`WriteError::UnknownMachine`].
+    ///
+    /// ```
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// use hiddenline::{DrawOptions, Paper, Scene, Target, View};
+    ///
+    /// let scene = Scene::open("examples/models/benchy_wheel.stl")?;
+    /// let sheet = scene.draw(&View::front(), &DrawOptions::default()).on(Paper::A4)?.optimized();
+    /// let hpgl = sheet.to_bytes(&Target::machine("hp7475a")?)?;
+    /// assert!(!hpgl.is_empty());
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[cfg(feature = "plotters")]
+    pub fn machine(name: &str) -> Result<Self, WriteError> {
+        let (plotters, profiles) = (hpgl::machines()?, gcode::GcodeProfile::names()?);
+        if let Some(plotter) = plotters.iter().find(|plotter| plotter.name == name) {
+            return Ok(Self::Hpgl(Box::new(plotter.clone())));
+        }
+        if profiles.iter().any(|profile| profile == name) {
+            return Ok(Self::Gcode(Box::new(gcode::GcodeProfile::named(name)?)));
+        }
+        let plotters = plotters.iter().map(|plotter| plotter.name.as_str());
+        let known: Vec<&str> = plotters.chain(profiles.iter().map(String::as_str)).collect();
+        Err(WriteError::UnknownMachine { name: name.to_owned(), known: known.join(", ") })
     }
 }
 

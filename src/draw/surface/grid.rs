@@ -3,7 +3,7 @@
 use super::error::SurfaceError;
 use super::options::{SurfaceEngine, SurfaceLines};
 use crate::camera::Camera;
-use crate::chain::grid_lines::{Lines, strokes};
+use crate::chain::grid_lines::{GridLines, strokes};
 use crate::draw::{DrawOutput, MeshSize};
 use crate::engines::edge::LineCounts;
 use crate::engines::surface::floating_horizon::Family;
@@ -66,11 +66,11 @@ pub(super) fn draw_grid(
     })?;
     let drawing = timed(&mut seconds.strokes, || {
         let (along_x, along_y) = (options.along_x, options.along_y);
-        let lines = Lines { along_x, along_y, every, side: None, separate: options.exact };
+        let lines = GridLines { along_x, along_y, every, side: None, separate: options.exact };
         if !options.underside {
             return strokes(grid, &pieces, camera, &lines);
         }
-        let of = |side| strokes(grid, &pieces, camera, &Lines { side: Some(side), ..lines });
+        let of = |side| strokes(grid, &pieces, camera, &GridLines { side: Some(side), ..lines });
         let mut drawing = of(SurfaceSide::Upper);
         drawing.append_undersides(&of(SurfaceSide::Lower));
         drawing

@@ -4,7 +4,7 @@ use crate::axes::Titles;
 use crate::draw::DEFAULT_SHORTEST_STROKE_MM;
 use crate::engines::surface::CellOrder;
 
-/// How far lines may be from the curves they stand for, in millimeters on paper, unless set otherwise.
+/// How far lines may deviate from the true curves, in millimeters on paper, unless set otherwise.
 pub const DEFAULT_SMOOTHNESS_MM: f64 = 0.1;
 
 /// Which lines of a surface are drawn, and how.
@@ -15,7 +15,7 @@ pub struct SurfaceLines {
     pub along_x: bool,
     /// Grid lines along y, or along v.
     pub along_y: bool,
-    /// Draw only every so many-th grid line of a family, and the last one.
+    /// Draw only every n-th grid line of a family, and the last one.
     pub every: usize,
     /// Level curves.
     pub levels: Option<Levels>,
@@ -27,9 +27,9 @@ pub struct SurfaceLines {
     pub intersections: bool,
     /// All edges of all triangles.
     pub mesh: bool,
-    /// How far lines may be from the curves they stand for, in millimeters on paper; 0 draws them as
+    /// How far lines may deviate from the true curves, in millimeters on paper; 0 draws them as
     /// sampled. Formulas are sampled up to eight times as finely as the surface says, and only the
-    /// lines of its own samples are drawn. Neither the floating horizon nor `mesh` does so.
+    /// lines of its own samples are drawn. The floating horizon and `mesh` ignore it.
     pub smoothness_mm: f64,
     /// Keep lines on the underside of the surface apart.
     pub underside: bool,
@@ -73,6 +73,79 @@ impl Default for SurfaceLines {
 }
 
 impl SurfaceLines {
+    /// Grid lines along x, or along u, only.
+    #[must_use]
+    pub fn along_x_only(self) -> Self {
+        Self { along_x: true, along_y: false, ..self }
+    }
+
+    /// Grid lines along y, or along v, only.
+    #[must_use]
+    pub fn along_y_only(self) -> Self {
+        Self { along_x: false, along_y: true, ..self }
+    }
+
+    /// No grid lines.
+    #[must_use]
+    pub fn no_grid_lines(self) -> Self {
+        Self { along_x: false, along_y: false, ..self }
+    }
+
+    /// Every `every`-th grid line of a family, and the last one.
+    #[must_use]
+    pub fn every(self, every: usize) -> Self {
+        Self { every, ..self }
+    }
+
+    /// Level curves.
+    #[must_use]
+    pub fn levels(self, levels: Levels) -> Self {
+        Self { levels: Some(levels), ..self }
+    }
+
+    /// Edges where the surface folds away from the eye.
+    #[must_use]
+    pub fn silhouette(self) -> Self {
+        Self { silhouette: true, ..self }
+    }
+
+    /// The border.
+    #[must_use]
+    pub fn border(self) -> Self {
+        Self { border: true, ..self }
+    }
+
+    /// Lines in which sheets cross.
+    #[must_use]
+    pub fn intersections(self) -> Self {
+        Self { intersections: true, ..self }
+    }
+
+    /// How far lines may deviate from the true curves, in millimeters on paper; 0 draws the
+    /// samples as they are.
+    #[must_use]
+    pub fn smoothness_mm(self, smoothness_mm: f64) -> Self {
+        Self { smoothness_mm, ..self }
+    }
+
+    /// No axes.
+    #[must_use]
+    pub fn without_axes(self) -> Self {
+        Self { axes: None, ..self }
+    }
+
+    /// Axes with these titles; an empty title is left out.
+    #[must_use]
+    pub fn axes(self, titles: Titles) -> Self {
+        Self { axes: Some(titles), ..self }
+    }
+
+    /// The visible-line algorithm; all give the same lines.
+    #[must_use]
+    pub fn engine(self, engine: SurfaceEngine) -> Self {
+        Self { engine, ..self }
+    }
+
     /// Whether any grid lines are drawn.
     pub(super) fn has_grid_lines(&self) -> bool {
         self.along_x || self.along_y
@@ -87,7 +160,7 @@ impl SurfaceLines {
 /// Which level curves are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Levels {
-    /// So many, evenly spaced between the lowest and the highest point.
+    /// This many, evenly spaced between the lowest and the highest point.
     Count(u16),
     /// At these heights, before any scaling.
     At(Vec<f64>),
@@ -107,4 +180,21 @@ pub enum SurfaceEngine {
     Roberts,
     /// Any surface, by Appel's algorithm.
     Appel,
+}
+
+impl SurfaceEngine {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 5] =
+        [Self::Auto, Self::MaxMin, Self::FloatingHorizon, Self::Roberts, Self::Appel];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::MaxMin => "max-min",
+            Self::FloatingHorizon => "floating-horizon",
+            Self::Roberts => "roberts",
+            Self::Appel => "appel",
+        }
+    }
 }

@@ -33,7 +33,7 @@ const LINES_TESTED: usize = 128;
 pub(super) struct SmoothSurface {
     pub(super) surface: SampledSurface,
     pub(super) camera: Camera,
-    /// How many cells along each axis stand for one of the surface's own samples.
+    /// How many cells along each axis replace one cell of the surface's own samples.
     pub(super) refined: usize,
     /// How far lines are from the function at most, in millimeters on paper; 0 when they may be as
     /// far off as they are.

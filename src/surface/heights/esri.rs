@@ -1,10 +1,10 @@
 //! ESRI ASCII grids: a header of keys and numbers, then the heights from the largest y down.
 //!
 //! ```text
-//!   ncols 3          xllcorner is the left side of the first cell, xllcenter its middle. GDAL
+//!   ncols 3          xllcorner is the left side of the first cell, xllcenter its center. GDAL
 //!   nrows 2          writes dx and dy in place of cellsize for cells that are not square.
 //!   xllcorner 10
-//!   yllcorner 20     Samples stand in the middle of cells.
+//!   yllcorner 20     Samples are at the centers of cells.
 //!   cellsize 2
 //!   NODATA_value -9999
 //!   4 5 6
@@ -34,7 +34,7 @@ const KEYS: [&str; 10] = [
     "nodata_value",
 ];
 
-/// What stands for "no data" unless the header says.
+/// The value for "no data" unless the header gives one.
 const USUAL_NODATA: f64 = -9999.0;
 
 fn key(word: &str) -> Option<&'static str> {

@@ -34,22 +34,48 @@ pub struct HeightOptions {
     pub nodata: Option<f64>,
 }
 
+impl HeightOptions {
+    /// x of the first and the last column.
+    #[must_use]
+    pub fn x(self, first: f64, last: f64) -> Self {
+        Self { x: Some((first, last)), ..self }
+    }
+
+    /// y of the first and the last row, from the smallest y up.
+    #[must_use]
+    pub fn y(self, first: f64, last: f64) -> Self {
+        Self { y: Some((first, last)), ..self }
+    }
+
+    /// The first row of the file has the largest y.
+    #[must_use]
+    pub fn flip_y(self) -> Self {
+        Self { flip_y: true, ..self }
+    }
+
+    /// This height, as written in the file, is a hole.
+    #[must_use]
+    pub fn nodata(self, height: f64) -> Self {
+        Self { nodata: Some(height), ..self }
+    }
+}
+
 /// Heights that were read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightField {
     /// The samples.
     pub grid: Grid,
-    /// What a person should know about the reading.
+    /// What is worth knowing about the file.
     pub notes: Vec<HeightNote>,
 }
 
-/// What was passed over in a height file, or looks wrong there.
+/// What was skipped in a height file, or looks wrong there.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum HeightNote {
     /// Lines before the first row of numbers.
     #[error("{} before the first row of numbers {}", counted(*.0), skipped(*.0))]
     TitlesSkipped(usize),
-    /// Three columns that are probably x, y and z of one point a line.
+    /// Three columns that are probably x, y and z of one point per line.
     #[error("the {rows} rows of 3 numbers look like the points x y z, one on each line")]
     LooksLikePoints {
         /// How many rows there are.

@@ -35,7 +35,7 @@ pub(super) fn read_array(bytes: &[u8]) -> Result<Array, HeightError> {
     let cut_off = || wrong("the file ends early");
     let byte = |k: usize| bytes.get(k).copied().map(usize::from).ok_or_else(cut_off);
     if !bytes.starts_with(b"\x93NUMPY") {
-        return Err(wrong("this is no array"));
+        return Err(wrong("this is not an array"));
     }
     let (length, start) = match byte(6)? {
         1 => (byte(8)? | byte(9)? << 8, 10),

@@ -45,7 +45,7 @@ pub(super) fn read(
         }
         match read_array(&unpacked) {
             Ok(array) => arrays.push((name, array)),
-            // An array of text, say, that nobody asked for.
+            // For example an array of text, which is not needed.
             Err(_) if !is_known(&name) => others.push(name),
             Err(error) => return Err(wrong(format!("array `{name}`: {error}"))),
         }

@@ -1,4 +1,4 @@
-//! What every height format is read into.
+//! The raster that every height format is read into.
 
 use super::HeightOptions;
 use crate::surface::grid::{Grid, GridError, evenly};
@@ -21,7 +21,7 @@ impl Raster {
         Self { columns, rows, heights, xs: None, ys: None }
     }
 
-    /// Turns the order of the rows around, with their coordinates.
+    /// Reverses the order of the rows, with their coordinates.
     pub(super) fn flip(&mut self) {
         if self.columns > 0 {
             self.heights = self.heights.chunks(self.columns).rev().flatten().copied().collect();
@@ -40,7 +40,7 @@ impl Raster {
         }
     }
 
-    /// Puts columns and rows in rising order and in their places.
+    /// Puts columns and rows in ascending order and places them.
     pub(super) fn place(mut self, options: &HeightOptions) -> Result<Grid, GridError> {
         if options.flip_y {
             self.flip();
@@ -76,7 +76,7 @@ fn coordinates(
     }
 }
 
-/// The heights that stand for "no data" in a file.
+/// The heights that mean "no data" in a file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NoData {
     /// NaN, which equals nothing, for none.
@@ -84,7 +84,7 @@ pub(super) struct NoData {
 }
 
 impl NoData {
-    /// The one that was asked for and the one that the file names.
+    /// The one given as an option, and the one that the file names.
     pub(super) fn new(asked: Option<f64>, named: Option<f64>) -> Self {
         Self { values: [asked, named].map(|value| value.unwrap_or(f64::NAN)) }
     }
@@ -94,7 +94,7 @@ impl NoData {
         Self { values: self.values.map(|value| f64::from(value as f32)) }
     }
 
-    /// The height, or NaN if it stands for "no data".
+    /// The height, or NaN if it means "no data".
     pub(super) fn height(self, z: f64) -> f64 {
         if self.values.contains(&z) { f64::NAN } else { z }
     }

@@ -4,7 +4,7 @@ use super::raster::{NoData, Raster};
 use super::{HeightError, HeightNote};
 use crate::surface::cells::{Cell, Numbers, Separator, lines};
 
-/// Three columns with at least so many rows are rather a list of points than a narrow grid.
+/// Three columns with at least this many rows are more likely a list of points than a narrow grid.
 const ROWS_OF_A_LIST: usize = 16;
 
 /// Reads rows of heights, that of the smallest y first.
@@ -25,13 +25,13 @@ pub(super) fn read(
     }
     let (titles, rows) = match rows.split_at_checked(n_titles) {
         Some((titles, rows)) if !rows.is_empty() => (titles, rows),
-        // Nothing but words: the first of them is what is wrong.
+        // Nothing but words: the first of them is the error.
         _ => (&[][..], &rows[..]),
     };
     let Some((_, first)) = rows.first() else { return Err(HeightError::Empty) };
     let separator = Separator::of(first);
     let has_coordinates = has_coordinates(first, rows.get(1));
-    // Some programs write a separator after the last cell of every row, too.
+    // Some programs also write a separator after the last cell of every row.
     let first_width = separator.cells(first).count();
     let ends_with_separator = |row: &str| match separator {
         Separator::Blanks => false,
@@ -106,8 +106,8 @@ fn kinds_have_word(row: &str) -> bool {
     kinds(row).any(|cell| cell == Cell::Word)
 }
 
-/// Whether a row holds the x coordinates: no number first, and then nothing but numbers, as many as
-/// in the next row.
+/// Whether a row holds the x coordinates: something other than a number first, then only numbers, as many
+/// as in the next row.
 fn has_coordinates(row: &str, next: Option<&(usize, &str)>) -> bool {
     let separator = Separator::of(row);
     let mut kinds = kinds(row);

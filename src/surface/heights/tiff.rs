@@ -7,7 +7,7 @@ use ::tiff::{ColorType, TiffError, TiffUnsupportedError};
 use super::raster::{NoData, Raster};
 use super::{HeightError, size};
 
-/// The TIFF tag in which GDAL writes, as text, the value that stands for "no data".
+/// The TIFF tag in which GDAL writes, as text, the value that means "no data".
 const GDAL_NODATA: u16 = 42113;
 
 pub(super) fn read(bytes: &[u8], nodata: Option<f64>) -> Result<Raster, HeightError> {

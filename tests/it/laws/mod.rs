@@ -13,6 +13,7 @@ pub(crate) mod engines;
 mod extent;
 mod flush;
 mod framing;
+mod front_door;
 mod intersections;
 mod invariance;
 mod layers;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3, dvec3};
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
 use hiddenline::stages::draw::surface::{
-    Levels, NoLevels, SurfaceDrawing, SurfaceEngine, SurfaceError, SurfaceLines, SurfaceNote,
+    Levels, NoLevels, SurfaceEngine, SurfaceError, SurfaceLines, SurfaceNote, SurfaceOutput,
     draw_surface,
 };
 use hiddenline::stages::engines::surface::{CellOrder, HorizonError};
@@ -23,7 +23,7 @@ fn bare() -> SurfaceLines {
     SurfaceLines { axes: None, ..SurfaceLines::default() }
 }
 
-fn drawn(surface: &Surface, view: NamedView, lines: &SurfaceLines) -> SurfaceDrawing {
+fn drawn(surface: &Surface, view: NamedView, lines: &SurfaceLines) -> SurfaceOutput {
     draw_surface(surface, &named(view), lines, &PageOptions::default()).expect("a drawing")
 }
 
@@ -33,7 +33,7 @@ fn refused(surface: &Surface, lines: &SurfaceLines) -> SurfaceError {
 }
 
 /// The length of all strokes of a kind, in units of the image.
-fn length(drawing: &SurfaceDrawing, kind: StrokeKind) -> f64 {
+fn length(drawing: &SurfaceOutput, kind: StrokeKind) -> f64 {
     let strokes = drawing.drawn.drawing.iter().filter(|stroke| stroke.kind == kind);
     strokes.flat_map(|stroke| stroke.points.windows(2)).map(|p| p[0].distance(p[1])).sum()
 }

@@ -1,0 +1,138 @@
+//! From formulas, heights or points to a surface, and a view of it to be put on paper.
+
+use std::fs;
+use std::path::Path;
+
+use super::{Error, Sheet};
+use crate::camera::framing::View;
+use crate::draw::surface::{SurfaceError, SurfaceLines, SurfaceOutput, draw_surface};
+use crate::model::scene::Scene;
+use crate::page::{Page, PageOptions, PenRule, PlotOptions};
+use crate::strokes::Strokes;
+use crate::surface::{HeightField, HeightOptions, LatticeLines, Surface, read_heights};
+
+impl Surface {
+    /// Reads a file of heights: rows of numbers, an ESRI ASCII grid, NPY, NPZ, or a gray PNG or TIFF,
+    /// recognized by its content.
+    ///
+    /// [`HeightField::open`] places the samples differently, and says what it skipped.
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no grid of heights.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self::grid(HeightField::open(path, &HeightOptions::default())?.grid))
+    }
+
+    /// Draws the surface as `view` shows it.
+    ///
+    /// ```
+    /// use hiddenline::{Levels, Paper, Surface, SurfaceLines, View};
+    ///
+    /// let peak = Surface::formula("exp(-r^2)")?.x(-2.0, 2.0).y(-2.0, 2.0);
+    /// let map = SurfaceLines::default().no_grid_lines().levels(Levels::Count(9)).border();
+    /// let sheet = peak.draw(&View::top(), &map).title("A peak").on(Paper::A5)?;
+    /// assert!(!sheet.is_empty());
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn draw(&self, view: &View, lines: &SurfaceLines) -> SurfaceDrawing<'_> {
+        SurfaceDrawing {
+            surface: self,
+            view: *view,
+            lines: lines.clone(),
+            plot: PlotOptions::default(),
+        }
+    }
+
+    /// The surface as triangles between its samples, to be filled or put together with models.
+    ///
+    /// # Errors
+    /// The surface cannot be sampled, or no four neighboring samples have heights.
+    ///
+    /// ```
+    /// use hiddenline::{DrawOptions, FillOptions, Paper, Surface, View};
+    ///
+    /// let hill = Surface::formula("exp(-r^2)")?.x(-2.0, 2.0).y(-2.0, 2.0).samples(21, 21).scene()?;
+    /// let lines = DrawOptions::default().all_edges();
+    /// let sheet = hill.draw(&View::isometric(), &lines).filled(FillOptions::default()).on(Paper::A4)?;
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let no_lines =
+            LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
+        let sampled = self.sample(1).map_err(SurfaceError::from)?;
+        let mesh = sampled.lined(&no_lines, &[]).into_mesh()?;
+        if mesh.n_faces() == 0 {
+            return Err(SurfaceError::NoCells.into());
+        }
+        Ok(Scene::new(mesh).with_intersections())
+    }
+}
+
+impl HeightField {
+    /// Reads a file of heights; see [`Surface::open`].
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no grid of heights.
+    pub fn open(path: impl AsRef<Path>, options: &HeightOptions) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let bytes = fs::read(path).map_err(|error| Error::Open { path: path.to_owned(), error })?;
+        read_heights(&bytes, options)
+            .map_err(|error| Error::Heights { path: path.to_owned(), error })
+    }
+}
+
+/// What to draw of a surface: a view of it, and which lines.
+///
+/// Nothing is computed before the paper is known: how finely a formula is sampled depends on how far
+/// lines may be from its curves in millimeters. [`on`](Self::on) puts the drawing on paper;
+/// [`strokes`](Self::strokes) gives its polylines.
+#[derive(Debug, Clone)]
+#[must_use = "a drawing does nothing until it is put on paper"]
+pub struct SurfaceDrawing<'a> {
+    surface: &'a Surface,
+    view: View,
+    lines: SurfaceLines,
+    plot: PlotOptions,
+}
+
+impl SurfaceDrawing<'_> {
+    /// What the drawing is called; written into files. [`SurfaceLines::axes`] draws a title.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.plot.title = title.into();
+        self
+    }
+
+    /// Width of the pen's line in millimeters; 0.3 unless set.
+    pub fn pen_width_mm(mut self, width_mm: f64) -> Self {
+        self.plot.pen_width_mm = width_mm;
+        self
+    }
+
+    /// Which pens draw what; by default one pen draws everything.
+    pub fn pens(mut self, pens: impl IntoIterator<Item = PenRule>) -> Self {
+        self.plot.pens = pens.into_iter().collect();
+        self
+    }
+
+    /// Puts the drawing on a sheet of paper, by default as large as a margin of 10 mm allows.
+    ///
+    /// # Errors
+    /// The surface cannot be sampled or drawn as asked, the view makes no camera, or the drawing cannot
+    /// be placed on the page.
+    pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
+        let SurfaceOutput { drawn, page, notes, .. } =
+            draw_surface(self.surface, &self.view, &self.lines, &page.into())?;
+        Ok(Sheet::new(page.plot(&drawn.drawing, self.plot.clone())).with_notes(notes))
+    }
+
+    /// The strokes with their kinds, axes included, in image coordinates (y up), and the page, which
+    /// maps these to millimeters: [`Page::page_from_image`].
+    ///
+    /// # Errors
+    /// As for [`on`](Self::on).
+    pub fn strokes(&self, page: impl Into<PageOptions>) -> Result<(Strokes, Page), Error> {
+        let lines = SurfaceLines { apart_by_kind: true, ..self.lines.clone() };
+        let output = draw_surface(self.surface, &self.view, &lines, &page.into())?;
+        Ok((output.drawn.drawing, output.page))
+    }
+}
