@@ -1,28 +1,11 @@
 """Reads DXF files with ezdxf and compares units, layers, linetypes and lengths with an SVG of the same drawing."""
 
 import math
-import re
 import sys
-import xml.etree.ElementTree as ElementTree
 
 import ezdxf
 
-SVG = "{http://www.w3.org/2000/svg}"
-
-
-def svg_lengths(path):
-    lengths = []
-    for group in ElementTree.parse(path).getroot().findall(f"{SVG}g"):
-        length = 0.0
-        for stroke in group.findall(f"{SVG}path"):
-            coordinates = [float(n) for n in re.findall(r"-?[\d.]+", stroke.get("d"))]
-            points = list(zip(coordinates[::2], coordinates[1::2]))
-            if stroke.get("d").endswith("Z"):
-                points.append(points[0])
-            length += sum(math.dist(a, b) for a, b in zip(points, points[1:]))
-        if len(group):
-            lengths.append(length)
-    return lengths
+from svg_layers import svg_layers
 
 
 def read(path, unit, page):
@@ -48,7 +31,8 @@ def lengths_by_layer(document):
 
 
 def same_as_svg(svg, dxf):
-    drawn, read_back = svg_lengths(svg), lengths_by_layer(read(dxf, 4, (297, 210)))
+    drawn = [length for group, length in svg_layers(svg) if len(group)]
+    read_back = lengths_by_layer(read(dxf, 4, (297, 210)))
     assert len(drawn) == len(read_back), (drawn, read_back)
     for length, (layer, found) in zip(drawn, read_back.items()):
         # The SVG is rounded to micrometers, the DXF to tenths of one.

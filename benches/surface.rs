@@ -3,7 +3,7 @@
 use divan::Bencher;
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
-use hiddenline::stages::chain::grid_lines::{Lines, strokes};
+use hiddenline::stages::chain::grid_lines::{GridLines, strokes};
 use hiddenline::stages::engines::surface::{CellOrder, max_min};
 use hiddenline::stages::surface::Grid;
 use hiddenline::stages::surface::formula::{Formula, Variables};
@@ -41,5 +41,5 @@ fn visibility(bencher: Bencher, n: usize) {
 fn chaining(bencher: Bencher, n: usize) {
     let (grid, camera) = (sinc_hat(n), camera());
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
-    bencher.bench(|| strokes(&grid, &pieces, &camera, &Lines::default()));
+    bencher.bench(|| strokes(&grid, &pieces, &camera, &GridLines::default()));
 }

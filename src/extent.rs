@@ -48,12 +48,10 @@ impl Extent {
         camera: &Camera,
     ) -> Option<Self> {
         let (eye, frame) = (camera.eye(), camera.frame());
-        let (nearest, widest) = match camera.projection() {
-            // Twice as far as the near plane: rounding cannot make a point of it that is cut.
-            Projection::Perspective { near, .. } => {
-                (2.0 * near * camera.forward().length(), widest())
-            }
-            Projection::Orthographic => (f64::NEG_INFINITY, DVec2::INFINITY),
+        let (nearest, widest) = match camera.near_distance() {
+            // Twice as far as the near plane: rounding cannot move a point that is cut beyond that.
+            Some(near) => (2.0 * near, widest()),
+            None => (f64::NEG_INFINITY, DVec2::INFINITY),
         };
         let extents = points.with_min_len(1 << 12).filter(|p| p.is_finite()).map(|p| {
             let point = ImagePoint::new(p - eye, camera, &frame);

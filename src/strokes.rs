@@ -80,10 +80,24 @@ pub enum HiddenLines {
     /// Not drawn.
     #[default]
     None,
-    /// Dashed, on a layer of their own.
+    /// Dashed, on their own layer.
     Dashed,
-    /// Solid, on a layer of their own.
+    /// Solid, on their own layer.
     Solid,
+}
+
+impl HiddenLines {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 3] = [Self::None, Self::Dashed, Self::Solid];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Dashed => "dashed",
+            Self::Solid => "solid",
+        }
+    }
 }
 
 /// One polyline of a [`Strokes`].

@@ -135,6 +135,18 @@ impl Camera {
         self.projection
     }
 
+    /// Distance of the near plane from the eye along the direction of view, in model units, rounded; none
+    /// in orthographic projection.
+    ///
+    /// Whether a point is beyond the near plane is decided exactly by
+    /// [`Sight::near_distance`](crate::predicates::Sight::near_distance).
+    pub fn near_distance(&self) -> Option<f64> {
+        match self.projection {
+            Projection::Perspective { near, .. } => Some(near * self.forward().length()),
+            Projection::Orthographic => None,
+        }
+    }
+
     /// `target − eye`, subtracted once per component; decisions take it as exact.
     pub fn forward(&self) -> DVec3 {
         self.target - self.eye

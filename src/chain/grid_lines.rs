@@ -16,7 +16,7 @@ use crate::surface::Grid;
 
 /// Which grid lines are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Lines {
+pub struct GridLines {
     /// Those along x.
     pub along_x: bool,
     /// Those along y.
@@ -30,7 +30,7 @@ pub struct Lines {
     pub separate: bool,
 }
 
-impl Default for Lines {
+impl Default for GridLines {
     fn default() -> Self {
         Self { along_x: true, along_y: true, every: 1, side: None, separate: false }
     }
@@ -39,7 +39,7 @@ impl Default for Lines {
 /// Draws the visible pieces. What lies nearer than the camera's near plane is cut off.
 ///
 /// O(edges), in parallel; the order of strokes does not depend on the number of threads.
-pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines) -> Strokes {
+pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLines) -> Strokes {
     let projector = Projector::new(camera);
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let every = lines.every.max(1);
@@ -79,7 +79,7 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &Lines)
     drawing
 }
 
-/// The camera with its frame at hand.
+/// The camera with its frame.
 struct Projector {
     eye: DVec3,
     frame: Frame,
@@ -90,13 +90,11 @@ struct Projector {
 
 impl Projector {
     fn new(camera: &Camera) -> Self {
-        let (near, towards) = match camera.projection() {
-            Projection::Perspective { near, .. } => {
-                (Some(near * camera.forward().length()), Towards::Point(camera.eye()))
-            }
-            Projection::Orthographic => (None, Towards::Along(camera.forward())),
+        let towards = match camera.projection() {
+            Projection::Perspective { .. } => Towards::Point(camera.eye()),
+            Projection::Orthographic => Towards::Along(camera.forward()),
         };
-        Self { eye: camera.eye(), frame: camera.frame(), near, towards }
+        Self { eye: camera.eye(), frame: camera.frame(), near: camera.near_distance(), towards }
     }
 
     fn image(&self, p: DVec3) -> DVec2 {
@@ -195,7 +193,7 @@ impl GridLine {
         grid: &Grid,
         pieces: &GridPieces,
         projector: &Projector,
-        lines: &Lines,
+        lines: &GridLines,
     ) -> Chains {
         let mut chains = Chains::default();
         let point = |k: usize| grid.point((self.first + k * self.step) as u32);

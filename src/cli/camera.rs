@@ -11,7 +11,7 @@ use hiddenline::stages::camera::framing::{
     ViewError,
 };
 use hiddenline::stages::camera::{Camera, CameraError, DEFAULT_FOV_DEG, DEFAULT_NEAR};
-use hiddenline::stages::write::json;
+use hiddenline::stages::write::json::{self, ReadCameraError};
 
 use super::choice::one_of;
 use super::paths::is_dash;
@@ -20,13 +20,13 @@ use super::values;
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
 pub(super) struct CameraArgs {
-    /// Where the observer stands
+    /// Position of the eye
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     eye: Option<DVec3>,
-    /// The point looked at [default: the middle of the bounding box]
+    /// Point to look at [default: the center of the bounding box]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     target: Option<DVec3>,
-    /// What is up on the page [default: 0,0,1, or 0,1,0 when looking along z]
+    /// Direction that points up on the page [default: 0,0,1, or 0,1,0 when looking along z]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// Degrees around the vertical: 0 from the front, 90 from the right [default: 30]
@@ -40,7 +40,7 @@ pub(super) struct CameraArgs {
     /// Distance from target to eye [default: the whole scene in view]
     #[arg(long, value_name = "D", value_parser = values::positive, conflicts_with = "eye")]
     distance: Option<f64>,
-    /// A view with a name, orthographic unless --projection says otherwise
+    /// Named view; orthographic unless --projection says otherwise
     #[arg(long, value_parser = one_of::<NamedView>(), conflicts_with = "eye")]
     view: Option<NamedView>,
     /// Projection [default: perspective, but orthographic with --view]
@@ -48,15 +48,15 @@ pub(super) struct CameraArgs {
     projection: Option<ProjectionKind>,
     /// Vertical field of view in degrees
     ///
-    /// It says how far away an automatic camera stands and what --fit-fov shows, nothing else.
+    /// It affects only the distance of an automatic camera, and what --fit-fov shows.
     #[arg(long, value_name = "DEG", value_parser = values::field_of_view)]
     #[arg(default_value_t = DEFAULT_FOV_DEG)]
     fov: f64,
-    /// Place of the near plane, as a part of the way from eye to target
+    /// Distance of the near plane from the eye, as a fraction of the distance to the target
     #[arg(long, value_name = "PART", value_parser = values::positive)]
     #[arg(default_value_t = DEFAULT_NEAR)]
     near: f64,
-    /// Take the camera of a strokes file (--format json)
+    /// Use the camera of a file written by --format json
     #[arg(long, value_name = "FILE")]
     #[arg(conflicts_with_all = ["eye", "target", "up", "azimuth", "elevation", "distance", "view",
         "projection", "fov", "near"])]
@@ -144,6 +144,12 @@ fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
     } else {
         bytes = std::fs::read(path).map_err(|error| failed(&error))?;
     }
-    // What is no text is no JSON either.
-    Ok(json::read_camera(&String::from_utf8_lossy(&bytes)).map_err(|error| failed(&error))?)
+    // Bytes that are not text are not JSON either.
+    let read = json::read_camera(&String::from_utf8_lossy(&bytes));
+    Ok(read.map_err(|error| match error {
+        ReadCameraError::Json(_) => {
+            format!("{}; give one written by --format json", failed(&error))
+        }
+        ReadCameraError::Camera(_) => failed(&error),
+    })?)
 }

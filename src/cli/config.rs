@@ -103,7 +103,7 @@ impl Setting {
     }
 }
 
-/// The arguments that hold, without the program's name.
+/// The resulting arguments, without the program's name.
 pub(super) fn arguments() -> impl Iterator<Item = OsString> {
     let arguments = ARGUMENTS.get().cloned();
     arguments.unwrap_or_else(|| std::env::args_os().skip(1).collect()).into_iter()
@@ -144,8 +144,8 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
                 continue;
             }
             let Some(arg) = option(options, &setting.name) else { continue };
-            // Commands share names: the lines of a model are not those of a surface. What another
-            // command takes is meant for that one; what none takes is refused below.
+            // Commands share names: the lines of a model are not those of a surface. A value that another
+            // command takes is meant for that one; a value that none takes is refused below.
             let other = |other: &&Command| option(other, &setting.name).is_some();
             let mut others = commands(&command).filter(other);
             if !setting.suits(options) && others.any(|other| setting.suits(other)) {
@@ -241,7 +241,7 @@ fn layers(
 /// Machines of the configuration files.
 #[derive(Default)]
 pub(super) struct OwnMachines {
-    /// The one that was asked for, and what to call its place.
+    /// The one asked for, and the name of its origin.
     pub(super) found: Option<(Table, String)>,
     /// The names of all.
     pub(super) names: Vec<String>,
@@ -297,7 +297,7 @@ fn refuse_unknown(
     let Some(name) = settings.keys().find(|name| !known.contains_key(name.as_str())) else {
         return Ok(());
     };
-    // Only now is it worth finding out where.
+    // Only now is the line needed.
     let text = std::fs::read_to_string(path).unwrap_or_default();
     Err(ConfigError::Unknown {
         path: path.to_owned(),
@@ -399,7 +399,7 @@ fn set(
 
 /// Settings from environment variables, with a warning about each that is not the name of an option.
 ///
-/// Several pens have blanks between them, as have the values of options that take several.
+/// Several pens are separated by blanks, as are the values of options that take several.
 fn environment(known: &BTreeMap<&str, &Arg>) -> Result<Layer, ConfigError> {
     let mut variables: Vec<(String, String)> = std::env::vars_os()
         .filter_map(|(name, value)| {

@@ -18,7 +18,7 @@ use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::{self, PageArgs};
-use super::paper::{Run, Sheet};
+use super::paper::{PlacedPage, Run};
 use super::scene::Subject;
 use super::{Refused, config, source};
 
@@ -27,9 +27,9 @@ Examples:
   hiddenline draw bunny.stl -o bunny.svg
       A three-quarter view, fitted to a sheet of A4.
   hiddenline draw part.stl --view isometric --hidden dashed --page a3 -o part.svg
-      An isometric drawing with hidden lines dashed on a layer of their own.
+      An isometric drawing with hidden lines dashed, on their own layer.
   hiddenline draw house.obj --up-axis y --eye=-30,-40,12 --fov 50 -o house.png
-      A picture of what is seen from a point. Numbers may be negative.
+      A picture seen from a given point. Numbers may be negative.
   hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
       True to scale, for a model in millimeters.
   hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
@@ -86,7 +86,7 @@ impl DrawArgs {
         Ok(Job {
             files,
             view,
-            page: output.target.within_reach(page.options()),
+            page: output.within_reach(page.options()),
             unit_mm: page.unit_mm(),
             dxf_scale: page.dxf_scale(),
             pen_width_mm: page.pen_width_mm(),
@@ -111,7 +111,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.unit_mm = job.unit_mm * unit_mm;
     run.dxf_scale = page::dxf_in_unit(job.dxf_scale, &page, unit_mm);
     run.progress.stage("drawing");
-    let sheet = Sheet::new(scene.extent(&camera), camera, &page)?;
+    let sheet = PlacedPage::new(scene.extent(&camera), camera, &page)?;
     let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
     run.stats.count(MeshSize::of(&scene));
     run.stats.add(&drawn);
@@ -123,7 +123,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
 }
 
 /// Why a drawing has no strokes, and what helps.
-fn why_empty(job: &Job, scene: &Scene, sheet: &Sheet, n_lines: usize) -> String {
+fn why_empty(job: &Job, scene: &Scene, sheet: &PlacedPage, n_lines: usize) -> String {
     let mm_per_unit = sheet.page.mm_per_image_unit();
     let all = DrawOptions { shortest_stroke_mm: 0.0, ..job.draw };
     let with_all = draw(scene, &sheet.camera, &all, mm_per_unit).drawing;

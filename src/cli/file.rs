@@ -21,7 +21,7 @@ pub(super) fn write_to_stdout<E: From<io::Error>>(
 
 /// Writes beside `path` and renames, so that `path` is as before until all is written.
 ///
-/// Links are followed. What is no file, such as a device, is written to directly.
+/// Links are followed. Devices and the like are written to directly.
 pub(super) fn write_to_file<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,

@@ -38,13 +38,13 @@ Examples:
   hiddenline fill part.stl -o part.svg
       Shaded faces with the visible edges on top.
   hiddenline fill house.obj --palette 4 -o house.pdf
-      In four grays, each on a layer of its own.
+      In four grays, each on its own layer.
   hiddenline fill spot.obj --up-axis y --palette navy,orange,ivory --light 1,-1,2 -o spot.svg
       In three inks, lit from the right.
   hiddenline fill shapes.stl --engine weiler-atherton --seam 0 --no-edges -o cut.svg
-      Exact regions beside each other, for a cutter.
+      Exact regions side by side, for a cutter.
   hiddenline fill part.stl --depth-cue 0.6 --no-edges -o part.png
-      What is far away pales.
+      Distant faces fade.
   hiddenline fill house.obj --white -o house.pdf
       The lines of `draw`, hidden ones painted over in white.
   hiddenline fill part.stl --turntable 24 -o turn.svg
@@ -52,7 +52,7 @@ Examples:
   hiddenline fill --expr \"sinc(r)\" --x=-9:9 --y=-9:9 --palette 5 -o hat.svg
       A surface z = f(x, y) in five grays.";
 
-// Of the formats that there are, these have filled areas.
+// Only these formats have filled areas.
 const OUTPUT_HELP: &str = "\
 File to write, its format given by the extension; `-` is standard output
 
@@ -62,8 +62,8 @@ const FORMAT_HELP: &str =
 
 /// Fill the visible faces of models with color
 ///
-/// Reads what `draw` reads, looks from where `draw` looks, and writes filled areas for print as SVG, PDF
-/// or PNG, with the lines of `draw` on top on a layer of their own.
+/// Takes the same models and the same camera as `draw`, and writes filled areas for print as SVG, PDF or
+/// PNG, with the lines of `draw` on top, on their own layer.
 #[derive(Args)]
 #[command(
     after_help = EXAMPLES,
@@ -128,7 +128,10 @@ impl FillArgs {
         let input = input.input(DEFAULT_SAMPLES)?.in_unit(page.given_unit_mm());
         let output = output.options(false)?;
         if !output.format.has_fills() {
-            return Err(NoFills(output.format).to_string().into());
+            let error = NoFills(output.format);
+            return Err(
+                format!("{error}; give another --format, or `hiddenline draw` the lines").into()
+            );
         }
         if areas.turntable.is_some() && output.path.is_none() {
             return Err("--turntable makes several files; give -o FILE".into());
@@ -166,7 +169,7 @@ impl FillArgs {
             turntable: areas.turntable,
             edges: (!edges.no_edges).then_some(lines),
             paints_over: areas.white,
-            page: output.target.within_reach(page.options()),
+            page: output.within_reach(page.options()),
             pen_width_mm,
             output,
         })

@@ -8,7 +8,7 @@ use hiddenline::stages::model::mesh::Mesh;
 
 use super::models::{ModelArgs, ModelFiles};
 use super::paper::Notes;
-use super::surface::{SheetArgs, Sheets};
+use super::surface::{SurfaceInput, SurfaceInputArgs};
 
 #[derive(Args)]
 #[command(mut_arg("models", |models| {
@@ -30,13 +30,13 @@ struct FormulaArgs {
     #[arg(long = "expr", value_name = "EXPR", allow_hyphen_values = true)]
     expression: Vec<String>,
     #[command(flatten)]
-    sheets: SheetArgs,
+    sheets: SurfaceInputArgs,
 }
 
 /// What is shown.
 pub(super) enum Input {
     Files(ModelFiles),
-    Sheets(Sheets),
+    Surface(SurfaceInput),
 }
 
 impl InputArgs {
@@ -44,7 +44,7 @@ impl InputArgs {
     pub(super) fn input(self, default_samples: usize) -> Result<Input, String> {
         let FormulaArgs { expression, sheets } = self.surface;
         if let Some(sheets) = sheets.sheets(expression, default_samples)? {
-            return Ok(Input::Sheets(sheets));
+            return Ok(Input::Surface(sheets));
         }
         let files = self.model.files()?;
         if files.models.is_empty() {
@@ -57,7 +57,7 @@ impl InputArgs {
 }
 
 impl Input {
-    /// The same with models in a unit of so many millimeters, whatever their files say.
+    /// The same with models in units of `unit_mm` millimeters, whatever their files say.
     #[must_use]
     pub(super) fn in_unit(self, unit_mm: Option<f64>) -> Self {
         match self {
@@ -69,7 +69,7 @@ impl Input {
     pub(super) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         match self {
             Self::Files(files) => files.read(),
-            Self::Sheets(sheets) => sheets.mesh(),
+            Self::Surface(sheets) => sheets.mesh(),
         }
     }
 
@@ -77,7 +77,7 @@ impl Input {
     pub(super) fn title(&self) -> String {
         match self {
             Self::Files(files) => files.title(),
-            Self::Sheets(sheets) => sheets.title(),
+            Self::Surface(sheets) => sheets.title(),
         }
     }
 
@@ -85,7 +85,7 @@ impl Input {
     pub(super) fn inputs(&self) -> Box<dyn Iterator<Item = PathBuf> + '_> {
         match self {
             Self::Files(files) => Box::new(files.inputs()),
-            Self::Sheets(sheets) => Box::new(sheets.file().into_iter()),
+            Self::Surface(sheets) => Box::new(sheets.file().into_iter()),
         }
     }
 
@@ -93,7 +93,7 @@ impl Input {
     pub(super) fn models(&self) -> &[PathBuf] {
         match self {
             Self::Files(files) => &files.models,
-            Self::Sheets(_) => &[],
+            Self::Surface(_) => &[],
         }
     }
 }

@@ -1,35 +1,24 @@
-//! The machine that the output is for: what it understands, and how it moves.
+//! The machine that the output is for: its format, and how it moves.
 
 use std::path::{Path, PathBuf};
 
 use hiddenline::stages::optimize::estimate::Motion;
-use hiddenline::stages::page::{Cropped, PageOptions};
+use hiddenline::stages::page::Cropped;
 use hiddenline::stages::plot::{Layer, Plot};
 use hiddenline::stages::write::hpgl::Plotter;
-use hiddenline::stages::write::{Format, gcode, hpgl};
+use hiddenline::stages::write::{Format, Target, gcode, hpgl};
 use thiserror::Error;
 
 use super::config;
 use super::messages::counted;
 use super::suggestion::suggestion;
 
-/// The plotter that HPGL is for, unless set otherwise.
-const DEFAULT_PLOTTER: &str = "hp7475a";
-/// The profile of G-code, unless set otherwise.
-const DEFAULT_GCODE: &str = "grbl-servo";
-
 /// The machine that a file is written for.
-pub(super) struct MachineTarget {
-    pub(super) device: Device,
+pub(super) struct Machine {
+    /// What HPGL and G-code are written as; `None` for formats that are the same for all machines.
+    pub(super) target: Option<Target>,
+    /// How it moves.
     pub(super) motion: Motion,
-}
-
-/// What the output depends on.
-pub(super) enum Device {
-    /// No machine: the format is the same for all.
-    Any,
-    Plotter(Plotter),
-    Gcode(Box<gcode::GcodeProfile>),
 }
 
 /// Why a machine cannot be used.
@@ -60,7 +49,7 @@ impl MachineError {
     }
 }
 
-impl MachineTarget {
+impl Machine {
     /// Finds the machine called `name`, or the default for `format`.
     pub(super) fn new(
         format: Format,
@@ -70,19 +59,19 @@ impl MachineTarget {
         if let Some(path) = gcode_profile {
             let profile = read_profile(path)?;
             let motion = profile.motion.clone();
-            let device = match format {
-                Format::Gcode => Device::Gcode(Box::new(profile)),
-                _ => Self::new(format, None, None)?.device,
+            let target = match format {
+                Format::Gcode => Some(Target::Gcode(Box::new(profile))),
+                _ => Self::new(format, None, None)?.target,
             };
-            return Ok(Self { device, motion });
+            return Ok(Self { target, motion });
         }
         let plotters = hpgl::machines()?;
         let profiles = gcode::GcodeProfile::names()?;
         let plotter = |name: &str| plotters.iter().find(|p| p.name.eq_ignore_ascii_case(name));
         let profile = |name: &str| profiles.iter().find(|p| p.eq_ignore_ascii_case(name));
         let wanted = name.unwrap_or(match format {
-            Format::Hpgl => DEFAULT_PLOTTER,
-            Format::Gcode => DEFAULT_GCODE,
+            Format::Hpgl => hpgl::DEFAULT_MACHINE,
+            Format::Gcode => gcode::DEFAULT_PROFILE,
             _ => "saxi",
         });
         let own = name.map(config::machine).transpose()?.unwrap_or_default();
@@ -92,15 +81,16 @@ impl MachineTarget {
         let found = match (own, plotter(wanted), profile(wanted)) {
             (Some(own), ..) => own,
             (None, Some(plotter), _) => {
-                Self { device: Device::Plotter(plotter.clone()), motion: Motion::default() }
+                let target = Some(Target::Hpgl(Box::new(plotter.clone())));
+                Self { target, motion: Motion::default() }
             }
             (None, None, Some(name)) => {
                 let profile = gcode::GcodeProfile::named(name)?;
                 let motion = profile.motion.clone();
-                Self { device: Device::Gcode(Box::new(profile)), motion }
+                Self { target: Some(Target::Gcode(Box::new(profile))), motion }
             }
             (None, None, None) => match Motion::named(&wanted.to_ascii_lowercase()) {
-                Some(motion) => Self { device: Device::Any, motion },
+                Some(motion) => Self { target: None, motion },
                 None => {
                     let plotters = plotters.iter().map(|p| p.name.as_str());
                     let known = Motion::NAMES.into_iter().chain(plotters);
@@ -118,27 +108,18 @@ impl MachineTarget {
             format: format.name(),
             suggestion,
         };
-        match (format, &found.device) {
-            (Format::Hpgl, Device::Plotter(_)) | (Format::Gcode, Device::Gcode(_)) => Ok(found),
+        match (format, &found.target) {
+            (Format::Hpgl, Some(Target::Hpgl(_))) | (Format::Gcode, Some(Target::Gcode(_))) => {
+                Ok(found)
+            }
             (Format::Hpgl, _) => {
                 Err(unfit(suggestion(wanted, plotters.iter().map(|p| p.name.as_str()))))
             }
             (Format::Gcode, _) => {
                 Err(unfit(suggestion(wanted, profiles.iter().map(String::as_str))))
             }
-            _ => Ok(Self { device: Device::Any, ..found }),
+            _ => Ok(Self { target: None, ..found }),
         }
-    }
-}
-
-impl MachineTarget {
-    /// The page with a margin so wide that the pen reaches everything between the margins.
-    pub(super) fn within_reach(&self, options: PageOptions) -> PageOptions {
-        let Device::Plotter(machine) = &self.device else { return options };
-        let paper = options.paper;
-        let border_mm = machine.unreachable_border_mm(paper.width_mm, paper.height_mm);
-        let margin_mm = options.margin_mm.max(border_mm.unwrap_or(0.0));
-        PageOptions { margin_mm, ..options }
     }
 }
 
@@ -153,7 +134,7 @@ pub(super) fn lost_ink(cropped: &Cropped) -> Option<String> {
     }
 }
 
-/// What layers ask for that the plotter has no instruction for.
+/// Warnings about what layers ask for but the plotter cannot do.
 pub(super) fn unkept_controls(plot: &Plot, machine: &Plotter) -> Vec<String> {
     let numbers = |asks: fn(&Layer) -> bool| {
         let layers = plot.plotted_layers().filter(|layer| asks(layer) && !layer.lines.is_empty());
@@ -185,7 +166,7 @@ fn own_machine(
     name: &str,
     mut table: toml::Table,
     origin: String,
-) -> Result<MachineTarget, MachineError> {
+) -> Result<Machine, MachineError> {
     let failed = |error: Box<dyn std::error::Error + Send + Sync>| MachineError::Own {
         origin: origin.clone(),
         error,
@@ -205,7 +186,7 @@ fn own_machine(
         table.entry("title").or_insert_with(|| name.into());
         let plotter: Plotter = table.try_into().map_err(|error| failed(error.into()))?;
         plotter.check().map_err(|error| failed(error.into()))?;
-        return Ok(MachineTarget { device: Device::Plotter(plotter), motion });
+        return Ok(Machine { target: Some(Target::Hpgl(Box::new(plotter))), motion });
     }
     if let Some(like) = table.remove("like") {
         let like = like.as_str().unwrap_or_default();
@@ -221,12 +202,12 @@ fn own_machine(
         table = known;
     } else if let (1, Some(motion)) = (table.len(), table.get("motion")) {
         let motion = motion.clone().try_into().map_err(|error| failed(error.into()))?;
-        return Ok(MachineTarget { device: Device::Any, motion });
+        return Ok(Machine { target: None, motion });
     }
     let text = toml::to_string(&table).map_err(|error| failed(error.into()))?;
     let profile = gcode::GcodeProfile::from_toml(&text).map_err(|error| failed(error.into()))?;
     let motion = profile.motion.clone();
-    Ok(MachineTarget { device: Device::Gcode(Box::new(profile)), motion })
+    Ok(Machine { target: Some(Target::Gcode(Box::new(profile))), motion })
 }
 
 fn read_profile(path: &Path) -> Result<gcode::GcodeProfile, MachineError> {

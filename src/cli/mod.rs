@@ -47,15 +47,18 @@ use self::surface::SurfaceArgs;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// When messages are colored; NO_COLOR and CLICOLOR_FORCE are heeded too
+    /// When to color messages; NO_COLOR and CLICOLOR_FORCE are respected
     #[arg(long, global = true, value_enum, default_value = "auto")]
     color: Color,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Color {
+    /// On a terminal
     Auto,
+    /// Always
     Always,
+    /// Never
     Never,
 }
 
@@ -90,9 +93,9 @@ enum Command {
 
 #[derive(Subcommand)]
 enum ConfigCommand {
-    /// Print the files that are read and the settings that hold
+    /// Print the configuration files and the resulting settings
     Show {
-        /// With the settings of this preset
+        /// Include the settings of this preset
         #[arg(long, value_name = "NAME")]
         preset: Option<String>,
     },
@@ -102,7 +105,7 @@ enum ConfigCommand {
 enum Refused {
     /// Arguments do not go together.
     Usage(String),
-    /// Something that they name is not there or no good.
+    /// Something that they name is missing or invalid.
     Failed(Box<dyn Error>),
 }
 
@@ -196,7 +199,7 @@ fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
     file::write_to_stdout(|out| out.write_all(&page)).map_err(Into::into)
 }
 
-/// Whether whoever reads our output has closed it: no failure of ours.
+/// Whether the reader of our output has closed it, which is not a failure.
 fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
     let mut cause = Some(error);
     while let Some(error) = cause {

@@ -3,13 +3,14 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::stages::model::diagnosis::{open_seams, seems_y_up};
 use hiddenline::stages::model::mesh::{Mesh, Repairs};
 use hiddenline::stages::read::{Fault, Model, ModelFormat, ReadError, material_files, read_file};
 
+use super::choice::one_of;
 use super::messages::counted;
 use super::paper::Notes;
 use super::paths::{is_dash, title};
@@ -24,11 +25,11 @@ pub(super) struct ModelArgs {
     /// Format of the models, regardless of their names
     ///
     /// Without it, the extension of each name decides, or else the content.
-    #[arg(long, value_name = "FORMAT", value_enum)]
-    input_format: Option<InputFormat>,
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ModelFormat>())]
+    input_format: Option<ModelFormat>,
     /// Axis that points up in the models [default: z, but y in glTF]
-    #[arg(long, value_name = "AXIS", value_enum)]
-    up_axis: Option<Axis>,
+    #[arg(long, value_name = "AXIS", value_parser = one_of::<UpAxis>(), allow_hyphen_values = true)]
+    up_axis: Option<UpAxis>,
     /// Factor for all coordinates; once for all models, or once for each in their order
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
     scale: Vec<f64>,
@@ -44,31 +45,13 @@ pub(super) struct ModelArgs {
     weld: f64,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum InputFormat {
-    Obj,
-    Stl,
-    Ply,
-    Off,
-    #[value(alias = "glb")]
-    Gltf,
-    #[value(name = "3mf")]
-    ThreeMf,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Axis {
-    Y,
-    Z,
-}
-
 /// The models, and how they become one scene.
 pub(super) struct ModelFiles {
     pub(super) models: Vec<PathBuf>,
     /// One for each model.
     poses: Vec<Pose>,
     input_format: Option<ModelFormat>,
-    up_axis: Option<Axis>,
+    up_axis: Option<UpAxis>,
     /// Millimeters in a model unit, which overrides the files.
     unit_mm: Option<f64>,
     arrangement: Arrangement,
@@ -82,7 +65,7 @@ impl ModelArgs {
         }
         Ok(ModelFiles {
             poses: self.poses()?,
-            input_format: self.input_format.map(InputFormat::format),
+            input_format: self.input_format,
             up_axis: self.up_axis,
             unit_mm: None,
             arrangement: Arrangement { weld_distance: self.weld, merge_equal_faces: true },
@@ -108,15 +91,6 @@ impl ModelArgs {
     }
 }
 
-impl Axis {
-    fn up(self) -> UpAxis {
-        match self {
-            Self::Y => UpAxis::Y,
-            Self::Z => UpAxis::Z,
-        }
-    }
-}
-
 impl ModelFiles {
     /// The same, but equal faces are not merged.
     #[must_use]
@@ -125,7 +99,7 @@ impl ModelFiles {
         self
     }
 
-    /// The same with models in a unit of so many millimeters, which overrides the files.
+    /// The same with models in units of `unit_mm` millimeters, which overrides the files.
     #[must_use]
     pub(super) fn in_unit(mut self, unit_mm: Option<f64>) -> Self {
         self.unit_mm = unit_mm;
@@ -143,7 +117,7 @@ impl ModelFiles {
             notes.hints.extend(self.up_axis_hint(&model, &title(path)));
             repairs += model.repairs;
             let scale = pose.scale * self.unit_factor(&model, &title(path), &mut notes);
-            let up_axis = model.format.up_axis_as_read(self.up_axis.map(Axis::up));
+            let up_axis = model.format.up_axis_as_read(self.up_axis);
             models.push((model.mesh, Pose { up_axis, scale, ..pose }));
         }
         let (mesh, arranged) = self.arrangement.arrange(models)?;
@@ -175,7 +149,7 @@ impl ModelFiles {
             .then(|| format!("{name} seems to be made with y up; if so, give --up-axis y"))
     }
 
-    /// What brings a model to the unit of the scene, that of the first model which has one.
+    /// The factor from a model's unit to that of the scene, the unit of the first model that has one.
     fn unit_factor(&self, model: &Model, name: &str, notes: &mut Notes) -> f64 {
         let (None, Some(unit_mm)) = (self.unit_mm, model.unit_mm) else { return 1.0 };
         let scene_mm = *notes.unit_mm.get_or_insert(unit_mm);
@@ -217,19 +191,6 @@ fn for_each_model<T: Copy>(
             "{name} is given {} times for {n_models} models; give it once for all, or once for each",
             given.len()
         )),
-    }
-}
-
-impl InputFormat {
-    fn format(self) -> ModelFormat {
-        match self {
-            Self::Obj => ModelFormat::Obj,
-            Self::Stl => ModelFormat::Stl,
-            Self::Ply => ModelFormat::Ply,
-            Self::Off => ModelFormat::Off,
-            Self::Gltf => ModelFormat::Gltf,
-            Self::ThreeMf => ModelFormat::ThreeMf,
-        }
     }
 }
 

@@ -4,17 +4,19 @@ use std::error::Error;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hiddenline::stages::optimize::{OptimizeOptions, near_overlap};
-use hiddenline::stages::page::{Crop, Orientation, Paper, PenRole, RefitOptions, refit};
+use hiddenline::stages::page::{Crop, PenRole, RefitOptions, refit};
 use hiddenline::stages::plot::Plot;
 use hiddenline::stages::read_svg::{self, SvgOptions};
 use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::Format;
 
-use super::machine::{self, Device};
+use super::choice::one_of;
+use super::machine;
 use super::messages::counted;
 use super::output::{OutputArgs, OutputOptions, check_place};
+use super::page::PaperArgs;
 use super::paper::{Notes, Run};
 use super::paths::{is_dash, title};
 use super::{Refused, config, source, values};
@@ -49,62 +51,37 @@ pub(super) struct OptimizeArgs {
     #[arg(long)]
     occlude: bool,
     #[command(flatten)]
-    sheet: SheetArgs,
+    sheet: PlacingArgs,
     #[command(flatten)]
     output: OutputArgs,
 }
 
 #[derive(Args)]
 #[command(next_help_heading = "Page")]
-struct SheetArgs {
-    /// Sheet to draw on: a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
-    /// [default: the page of the file]
-    #[arg(long, value_name = "SIZE")]
-    page: Option<Paper>,
-    /// Turn the sheet so that it is wider than high
-    #[arg(long, conflicts_with = "portrait")]
-    landscape: bool,
-    /// Turn the sheet so that it is higher than wide
-    #[arg(long)]
-    portrait: bool,
-    /// Empty border, for --fit and --crop margin
-    #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
-    margin: f64,
+struct PlacingArgs {
+    #[command(flatten)]
+    paper: PaperArgs,
     /// Scale the drawing to fill the space between the margins, centered
     #[arg(long)]
     fit: bool,
     /// Center the drawing on the sheet
     #[arg(long)]
     center: bool,
-    /// Where to crop the ink
-    #[arg(long, value_name = "WHERE", value_enum, default_value = "page")]
-    crop: CropAt,
+    /// Where ink is cropped; --margin counts for this and for --fit
+    #[arg(long, value_name = "WHERE", value_parser = one_of::<Crop>())]
+    #[arg(default_value = Crop::Page.name())]
+    crop: Crop,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum CropAt {
-    Page,
-    Margin,
-    None,
-}
-
-impl SheetArgs {
+impl PlacingArgs {
     fn options(&self) -> RefitOptions {
         RefitOptions {
-            paper: self.page,
-            orientation: match (self.landscape, self.portrait) {
-                (true, _) => Some(Orientation::Landscape),
-                (_, true) => Some(Orientation::Portrait),
-                _ => None,
-            },
-            margin_mm: self.margin,
+            paper: self.paper.paper(),
+            orientation: self.paper.orientation(),
+            margin_mm: self.paper.margin_mm().unwrap_or(0.0),
             fit: self.fit,
             center: self.center,
-            crop: match self.crop {
-                CropAt::Page => Crop::Page,
-                CropAt::Margin => Crop::Margin,
-                CropAt::None => Crop::None,
-            },
+            crop: self.crop,
         }
     }
 }
@@ -180,9 +157,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     }
     let n_read = n_strokes(&plot);
     let mut warnings: Vec<String> = read.warnings.into_iter().collect();
-    let sheet = match &job.output.target.device {
+    let sheet = match job.output.plotter() {
         // `--fit` fits the drawing into what the pen can reach.
-        Device::Plotter(machine) if job.sheet.fit => {
+        Some(machine) if job.sheet.fit => {
             let paper = job
                 .sheet
                 .paper
@@ -201,7 +178,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         )
     }));
     let mut plot = cropped.plot;
-    if let (Format::Hpgl, Device::Plotter(machine)) = (job.output.format, &job.output.target.device)
+    if let Some(machine) = job.output.plotter()
         && !job.output.plotting.has_pens()
     {
         machine.assign_pens(&mut plot).map_err(|error| {

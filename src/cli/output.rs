@@ -5,13 +5,17 @@ mod place;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use hiddenline::stages::write::Format;
+use hiddenline::stages::optimize::estimate::Motion;
+use hiddenline::stages::page::PageOptions;
+use hiddenline::stages::write::dxf::DxfScale;
+use hiddenline::stages::write::hpgl::Plotter;
 use hiddenline::stages::write::png::{Marks, Resolution};
 use hiddenline::stages::write::svg::StrokeElement;
+use hiddenline::stages::write::{Format, Target};
 
 pub(super) use self::place::check_place;
 use super::choice::one_of;
-use super::machine::MachineTarget;
+use super::machine::Machine;
 use super::paths::is_dash;
 use super::plotting::{PlotArgs, Plotting};
 use super::{Refused, config, values};
@@ -27,7 +31,7 @@ pub(super) struct OutputArgs {
     /// Format of the output [default: by extension; svg on standard output]
     #[arg(long, value_parser = one_of::<Format>())]
     format: Option<Format>,
-    /// Element that a stroke is written as in SVG
+    /// SVG element written for each stroke
     #[arg(long, value_name = "ELEMENT", value_parser = one_of::<StrokeElement>())]
     #[arg(default_value = StrokeElement::default().name())]
     svg_element: StrokeElement,
@@ -43,12 +47,12 @@ pub(super) struct OutputArgs {
     /// (last).
     #[arg(long, value_name = "WHAT", value_enum, value_delimiter = ',')]
     png_show: Vec<PngMark>,
-    /// How DXF has dashed lines: each dash a line of its own, or whole lines with a linetype
+    /// How dashed lines are written in DXF: one line per dash, or whole lines with a linetype
     ///
-    /// CAM programs want lines; CAD programs draw native dashes and can change them.
+    /// CAM programs need lines; CAD programs can draw and edit native dashes.
     #[arg(long, value_name = "HOW", value_enum, default_value = "lines")]
     dxf_dashes: DxfDashes,
-    /// Threads to work with [default: all]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Print counts and times as JSON, the last line on standard error
@@ -57,13 +61,13 @@ pub(super) struct OutputArgs {
     /// Print nothing but errors
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-    /// Print what was done in more detail
+    /// Print more detail
     #[arg(short, long)]
     verbose: bool,
     /// Treat warnings as errors: exit with 1 and write nothing
     #[arg(long)]
     strict: bool,
-    /// Take the settings called NAME in the configuration files
+    /// Use the preset called NAME from the configuration files
     #[arg(long, value_name = "NAME")]
     preset: Option<String>,
     #[command(flatten)]
@@ -72,13 +76,17 @@ pub(super) struct OutputArgs {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum DxfDashes {
+    /// One line per dash
     Lines,
+    /// Whole lines with a linetype
     Native,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum PngMark {
+    /// Pen-up travel
     Travel,
+    /// Stroke order
     Order,
 }
 
@@ -87,9 +95,10 @@ pub(super) struct OutputOptions {
     /// `None` is standard output.
     pub(super) path: Option<PathBuf>,
     pub(super) format: Format,
-    pub(super) svg_element: StrokeElement,
-    pub(super) resolution: Resolution,
-    pub(super) marks: Marks,
+    /// What plots are written as; `None` for formats that hold more than a plot.
+    pub(super) target: Option<Target>,
+    /// How the machine moves.
+    pub(super) motion: Motion,
     /// Whether dashed lines are written whole, for the format to draw the dashes.
     pub(super) keeps_dashes_whole: bool,
     pub(super) threads: Option<usize>,
@@ -98,7 +107,6 @@ pub(super) struct OutputOptions {
     pub(super) verbose: bool,
     pub(super) strict: bool,
     pub(super) plotting: Plotting,
-    pub(super) target: MachineTarget,
     /// Files that these options name.
     pub(super) inputs: Vec<PathBuf>,
     /// About options that have no effect.
@@ -112,25 +120,34 @@ impl OutputArgs {
     pub(super) fn options(self, exact: bool) -> Result<OutputOptions, Refused> {
         let path = self.output.filter(|path| !is_dash(path));
         let format = output_format(self.format, path.as_deref())?;
-        let target = self.plotting.target(format)?;
+        let Machine { target, motion } = self.plotting.machine(format)?;
+        let resolution = match (self.dpi, self.png_width) {
+            (_, Some(width)) => Resolution::WidthPx(width),
+            (Some(dpi), None) => Resolution::Dpi(dpi),
+            (None, None) => Resolution::default(),
+        };
+        let marks = Marks {
+            travel: self.png_show.contains(&PngMark::Travel),
+            order: self.png_show.contains(&PngMark::Order),
+        };
+        let target = match format {
+            Format::Svg => Some(Target::Svg(self.svg_element)),
+            Format::Pdf => Some(Target::Pdf),
+            // The scale follows once the models have said their unit.
+            Format::Dxf => Some(Target::Dxf(DxfScale::default())),
+            Format::Png => Some(Target::Png(resolution, marks)),
+            Format::Hpgl | Format::Gcode => target,
+            Format::Json => None,
+        };
         Ok(OutputOptions {
             inputs: self.plotting.inputs(),
             warnings: without_effect(format),
             plotting: self.plotting.options(exact, format)?,
             keeps_dashes_whole: format == Format::Dxf && self.dxf_dashes == DxfDashes::Native,
             target,
+            motion,
             format,
             path,
-            svg_element: self.svg_element,
-            marks: Marks {
-                travel: self.png_show.contains(&PngMark::Travel),
-                order: self.png_show.contains(&PngMark::Order),
-            },
-            resolution: match (self.dpi, self.png_width) {
-                (_, Some(width)) => Resolution::WidthPx(width),
-                (Some(dpi), None) => Resolution::Dpi(dpi),
-                (None, None) => Resolution::default(),
-            },
             threads: self.threads.map(usize::from),
             stats: self.stats,
             quiet: self.quiet,
@@ -147,13 +164,12 @@ impl OutputOptions {
         threads: Option<usize>,
         stats: bool,
         quiet: bool,
-    ) -> Result<Self, Refused> {
-        Ok(Self {
+    ) -> Self {
+        Self {
             path,
             format: Format::Png,
-            svg_element: StrokeElement::default(),
-            resolution: Resolution::default(),
-            marks: Marks::default(),
+            target: None,
+            motion: Motion::default(),
             threads,
             stats,
             quiet,
@@ -161,10 +177,24 @@ impl OutputOptions {
             strict: false,
             plotting: Plotting::default(),
             keeps_dashes_whole: false,
-            target: MachineTarget::new(Format::Png, None, None)?,
             inputs: Vec::new(),
             warnings: Vec::new(),
-        })
+        }
+    }
+
+    /// The plotter that HPGL is written for.
+    pub(super) fn plotter(&self) -> Option<&Plotter> {
+        match &self.target {
+            Some(Target::Hpgl(plotter)) => Some(plotter),
+            _ => None,
+        }
+    }
+
+    /// The page with a margin so wide that the pen reaches everything between the margins.
+    pub(super) fn within_reach(&self, page: PageOptions) -> PageOptions {
+        let Some(plotter) = self.plotter() else { return page };
+        let border_mm = plotter.unreachable_border_mm(page.paper.width_mm, page.paper.height_mm);
+        PageOptions { margin_mm: page.margin_mm.max(border_mm.unwrap_or(0.0)), ..page }
     }
 }
 

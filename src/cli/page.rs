@@ -1,55 +1,77 @@
 //! The page: its size, and how large the drawing is on it.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hiddenline::stages::page::{
     DEFAULT_MARGIN_MM, DEFAULT_PEN_WIDTH_MM, Orientation, PageOptions, Paper, Placement,
 };
 
 use hiddenline::stages::write::dxf::{DxfScale, DxfUnit};
 
+use super::choice::one_of;
 use super::values;
+
+/// The sheet, for all commands that draw on one.
+#[derive(Args)]
+#[command(next_help_heading = "Page")]
+pub(super) struct PaperArgs {
+    /// a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
+    /// [default: a4, for `optimize` the page of the file]
+    ///
+    /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
+    #[arg(long, value_name = "SIZE")]
+    page: Option<Paper>,
+    /// Turn the sheet so that it is wider than high
+    #[arg(long, conflicts_with = "portrait")]
+    landscape: bool,
+    /// Turn the sheet so that it is higher than wide
+    #[arg(long)]
+    portrait: bool,
+    /// Empty border on all sides [default: 10, for `optimize` 0]
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    margin: Option<f64>,
+}
+
+impl PaperArgs {
+    /// The sheet, if it was given.
+    pub(super) fn paper(&self) -> Option<Paper> {
+        self.page
+    }
+
+    /// Which way the sheet lies, if that was given.
+    pub(super) fn orientation(&self) -> Option<Orientation> {
+        match (self.landscape, self.portrait) {
+            (true, _) => Some(Orientation::Landscape),
+            (_, true) => Some(Orientation::Portrait),
+            _ => None,
+        }
+    }
+
+    /// Empty border, if it was given.
+    pub(super) fn margin_mm(&self) -> Option<f64> {
+        self.margin
+    }
+}
 
 #[derive(Args)]
 #[command(next_help_heading = "Page")]
 pub(super) struct PageArgs {
-    /// a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
-    ///
-    /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
-    #[arg(long, value_name = "SIZE", default_value = "a4")]
-    page: Paper,
-    /// Wide rather than high
-    #[arg(long, conflicts_with = "portrait")]
-    landscape: bool,
-    /// High rather than wide
-    #[arg(long)]
-    portrait: bool,
-    /// Empty border; nothing is drawn outside
-    #[arg(long, value_name = "MM", value_parser = values::length)]
-    #[arg(default_value_t = DEFAULT_MARGIN_MM)]
-    margin: f64,
+    #[command(flatten)]
+    paper: PaperArgs,
     /// Scale, as in 1:10, instead of fitting the drawing to the page
     ///
     /// In perspective it holds at the distance of the target. Coordinates in DXF are then model units.
     #[arg(long, value_name = "1:N", value_parser = values::scale, conflicts_with = "fit_fov")]
     drawing_scale: Option<f64>,
-    /// What a model unit is, for --drawing-scale [default: what the model says, else mm]
-    #[arg(long, value_enum)]
-    unit: Option<LengthUnit>,
-    /// Show exactly the field of view between the upper and the lower margin
+    /// Unit of the model, for --drawing-scale [default: as in the file, otherwise mm]
+    #[arg(long, value_parser = one_of::<DxfUnit>())]
+    unit: Option<DxfUnit>,
+    /// Fit the field of view, not the scene, between the upper and the lower margin
     #[arg(long)]
     fit_fov: bool,
     /// Width of the pen's line
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     #[arg(default_value_t = DEFAULT_PEN_WIDTH_MM)]
     pen_width: f64,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum LengthUnit {
-    Mm,
-    Cm,
-    M,
-    In,
 }
 
 impl PageArgs {
@@ -60,24 +82,14 @@ impl PageArgs {
     /// What coordinates in DXF mean: model units if the drawing has a scale, or else millimeters on
     /// paper.
     pub(super) fn dxf_scale(&self) -> DxfScale {
-        let unit = match self.unit.unwrap_or(LengthUnit::Mm) {
-            LengthUnit::Mm => DxfUnit::Millimeter,
-            LengthUnit::Cm => DxfUnit::Centimeter,
-            LengthUnit::M => DxfUnit::Meter,
-            LengthUnit::In => DxfUnit::Inch,
-        };
+        let unit = self.unit.unwrap_or(DxfUnit::Millimeter);
         let at_scale = |scale: f64| DxfScale { mm_per_unit: scale * self.unit_mm(), unit };
         self.drawing_scale.map_or(DxfScale::default(), at_scale)
     }
 
     /// Millimeters in a model unit, if it was given.
     pub(super) fn given_unit_mm(&self) -> Option<f64> {
-        self.unit.map(|unit| match unit {
-            LengthUnit::Mm => 1.0,
-            LengthUnit::Cm => 10.0,
-            LengthUnit::M => 1000.0,
-            LengthUnit::In => 25.4,
-        })
+        self.unit.map(DxfUnit::mm)
     }
 
     /// Millimeters in a model unit, for --drawing-scale.
@@ -87,13 +99,9 @@ impl PageArgs {
 
     pub(super) fn options(&self) -> PageOptions {
         PageOptions {
-            paper: self.page,
-            orientation: match (self.landscape, self.portrait) {
-                (true, _) => Some(Orientation::Landscape),
-                (_, true) => Some(Orientation::Portrait),
-                _ => None,
-            },
-            margin_mm: self.margin,
+            paper: self.paper.paper().unwrap_or(Paper::A4),
+            orientation: self.paper.orientation(),
+            margin_mm: self.paper.margin_mm().unwrap_or(DEFAULT_MARGIN_MM),
             placement: match (self.drawing_scale, self.fit_fov) {
                 (Some(scale), _) => Placement::Scale { mm_per_unit: scale * self.unit_mm() },
                 (None, true) => Placement::FieldOfView,
@@ -103,7 +111,7 @@ impl PageArgs {
     }
 }
 
-/// The same page for models in a unit of so many millimeters rather than in millimeters.
+/// The same page for models in units of `unit_mm` millimeters rather than of one.
 pub(super) fn in_unit(page: PageOptions, unit_mm: f64) -> PageOptions {
     let placement = match page.placement {
         Placement::Scale { mm_per_unit } => Placement::Scale { mm_per_unit: mm_per_unit * unit_mm },
@@ -112,17 +120,15 @@ pub(super) fn in_unit(page: PageOptions, unit_mm: f64) -> PageOptions {
     PageOptions { placement, ..page }
 }
 
-/// The same meaning of coordinates in DXF for models in a unit of so many millimeters rather than in
-/// millimeters. In units other than these, coordinates stay in millimeters.
+/// The same meaning of coordinates in DXF for models in units of `unit_mm` millimeters rather than of one.
+/// In units that DXF does not know, coordinates stay in millimeters.
 pub(super) fn dxf_in_unit(scale: DxfScale, page: &PageOptions, unit_mm: f64) -> DxfScale {
-    let unit = match unit_mm {
-        10.0 => DxfUnit::Centimeter,
-        25.4 => DxfUnit::Inch,
-        1000.0 => DxfUnit::Meter,
-        _ => return scale,
-    };
-    match page.placement {
-        Placement::Scale { mm_per_unit } => DxfScale { mm_per_unit, unit },
+    if unit_mm == 1.0 {
+        return scale;
+    }
+    let unit = DxfUnit::ALL.into_iter().find(|unit| unit.mm() == unit_mm);
+    match (page.placement, unit) {
+        (Placement::Scale { mm_per_unit }, Some(unit)) => DxfScale { mm_per_unit, unit },
         _ => scale,
     }
 }

@@ -1,4 +1,4 @@
-//! From a drawing to a file: placed on the page, joined and ordered, written, told about.
+//! From a drawing to a file: placed on the page, joined and ordered, written, and reported.
 
 use std::error::Error;
 use std::io::{self, IsTerminal, Write};
@@ -15,9 +15,8 @@ use hiddenline::stages::strokes::Strokes;
 use hiddenline::stages::timing::{Seconds, timed};
 use hiddenline::stages::write::dxf::DxfScale;
 use hiddenline::stages::write::png::PngError;
-use hiddenline::stages::write::{Format, dxf, gcode, hpgl, json, pdf, png, svg};
+use hiddenline::stages::write::{Format, Target, WriteError, hpgl, json, write};
 
-use super::machine::Device;
 use super::messages::counted;
 use super::output::OutputOptions;
 use super::plotting::Finished;
@@ -25,7 +24,7 @@ use super::progress::Progress;
 use super::stats::{PlotStats, Stats, peak_bytes};
 use super::{file, machine, messages};
 
-/// What reading has to tell, for when all went well.
+/// What there is to report once all went well.
 #[derive(Default)]
 pub(super) struct Notes {
     pub(super) warnings: Vec<String>,
@@ -37,7 +36,7 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// Adds what else there is to tell.
+    /// Adds more to report.
     pub(super) fn add(&mut self, other: Self) {
         self.warnings.extend(other.warnings);
         self.hints.extend(other.hints);
@@ -56,19 +55,19 @@ pub(super) struct Run<'a> {
     pub(super) unit_mm: f64,
     /// What coordinates in DXF mean.
     pub(super) dxf_scale: DxfScale,
-    /// Why there are no strokes, if it turns out that there are none.
+    /// Why there are no strokes, in case there are none.
     pub(super) empty_because: String,
 }
 
 /// A page, and what it shows from where.
-pub(super) struct Sheet {
+pub(super) struct PlacedPage {
     pub(super) camera: Camera,
     pub(super) page: Page,
     pub(super) extent: Extent,
     pub(super) options: PageOptions,
 }
 
-impl Sheet {
+impl PlacedPage {
     /// The page for what takes up `extent` of the image.
     pub(super) fn new(
         extent: Extent,
@@ -162,11 +161,11 @@ impl<'a> Run<'a> {
     pub(super) fn draw(
         mut self,
         drawing: &Strokes,
-        sheet: &Sheet,
+        sheet: &PlacedPage,
         plot: PlotOptions,
         usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
-        let Sheet { camera, page, .. } = sheet;
+        let PlacedPage { camera, page, .. } = sheet;
         let paper = page.paper.description();
         if self.output.format == Format::Json {
             let path = self.output.path.as_deref();
@@ -209,40 +208,33 @@ impl<'a> Run<'a> {
         plot: Plot,
         usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
-        let (output, dxf_scale) = (self.output, self.dxf_scale);
-        let plot = match (&output.target.device, output.format) {
-            (Device::Plotter(machine), Format::Hpgl) => {
-                let profile = hpgl::LoadedPlotter::on(&plot, machine.clone(), None)?;
-                let reach = profile.reach(&plot);
+        let output = self.output;
+        let plot = match output.plotter() {
+            Some(plotter) => {
+                let reach = hpgl::LoadedPlotter::on(&plot, plotter.clone(), None)?.reach(&plot);
                 let cropped = crop_to(plot, reach);
                 let lost = machine::lost_ink(&cropped);
                 self.notes.warnings.extend(lost.map(|lost| {
                     format!(
                         "{lost} cut off: {} does not reach that far; make the drawing smaller \
                          or the margin wider",
-                        machine.title
+                        plotter.title
                     )
                 }));
-                self.notes.warnings.extend(machine::unkept_controls(&cropped.plot, machine));
+                self.notes.warnings.extend(machine::unkept_controls(&cropped.plot, plotter));
                 cropped.plot
             }
-            _ => plot,
+            None => plot,
         };
         self.progress.stage("ordering strokes");
         let mut order_seconds = 0.0;
         let Finished { plot, stats, n_changes } = timed(&mut order_seconds, || {
             let progress = &self.progress;
-            output.plotting.finish(plot, &output.target, usual, &mut |share| progress.share(share))
+            output.plotting.finish(plot, &output.motion, usual, &mut |share| progress.share(share))
         });
         self.stats.seconds.order += order_seconds;
         self.stats.plot = Some(stats);
         let done = Done { stats, n_changes, order_seconds };
-        let profile = match (&output.target.device, output.format) {
-            (Device::Plotter(machine), Format::Hpgl) => {
-                Some(hpgl::LoadedPlotter::on(&plot, machine.clone(), None)?)
-            }
-            _ => None,
-        };
         self.notes.warnings.extend(alike_pens(&plot));
         let mut plot = plot;
         if output.format == Format::Dxf {
@@ -251,22 +243,14 @@ impl<'a> Run<'a> {
         let is_empty =
             plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty());
         let what = Written { paper, contents: described(&plot, &done) };
+        let target = match &output.target {
+            Some(Target::Dxf(_)) => Target::Dxf(self.dxf_scale),
+            Some(target) => target.clone(),
+            None => return Err(WriteError::OnlyStrokes.into()),
+        };
         let written = &plot;
-        self.write(path, what, is_empty, Some(done), |out| -> Result<Seconds, PngError> {
-            match (output.format, &output.target.device) {
-                (Format::Hpgl, _) => {
-                    if let Some(profile) = &profile {
-                        hpgl::write(written, profile, out)?;
-                    }
-                }
-                (Format::Gcode, Device::Gcode(profile)) => gcode::write(written, profile, out)?,
-                (Format::Pdf, _) => pdf::write(written, out)?,
-                (Format::Dxf, _) => dxf::write(written, dxf_scale, out)?,
-                (Format::Png, _) => {
-                    png::write_marked(written, output.resolution, output.marks, out)?;
-                }
-                _ => svg::write(written, output.svg_element, out)?,
-            }
+        self.write(path, what, is_empty, Some(done), |out| -> Result<Seconds, OutputError> {
+            write(written, &target, out)?;
             Ok(Seconds::default())
         })
     }
@@ -327,6 +311,33 @@ impl<'a> Run<'a> {
             messages::plain(serde_json::to_string(stats)?);
         }
         Ok(())
+    }
+}
+
+/// Why a plot is not written, with the options that mend it.
+#[derive(Debug, thiserror::Error)]
+enum OutputError {
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    #[error("{}", with_remedy(.0))]
+    Write(#[source] WriteError),
+}
+
+impl From<WriteError> for OutputError {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io(error) => Self::Io(error),
+            error => Self::Write(error),
+        }
+    }
+}
+
+fn with_remedy(error: &WriteError) -> String {
+    match error {
+        WriteError::Png(PngError::Size { .. }) => {
+            format!("{error}; give another --dpi or --png-width")
+        }
+        _ => error.to_string(),
     }
 }
 
@@ -401,7 +412,7 @@ fn duration(minutes: f64) -> String {
     }
 }
 
-/// What `--verbose` tells.
+/// Prints what `--verbose` adds.
 fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
     let seconds = &stats.seconds;
     if !stats.engine.is_empty() {
@@ -436,7 +447,7 @@ fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
     }
 }
 
-/// Pens that programs which go by color would take for one.
+/// Pens that programs which distinguish pens by color would take for one.
 fn alike_pens(plot: &Plot) -> Option<String> {
     let layers = plot.plotted_layers().enumerate();
     let mut pairs =
@@ -444,7 +455,7 @@ fn alike_pens(plot: &Plot) -> Option<String> {
     pairs.find(|(a, b)| a.pen.color == b.pen.color && a.pen.width_mm != b.pen.width_mm).map(
         |(a, b)| {
             format!(
-                "pens {} and {} have one color; software that goes by color takes them for one pen",
+                "pens {} and {} have the same color; software that goes by color takes them for one pen",
                 a.number, b.number
             )
         },

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hiddenline::stages::optimize::estimate::{self, PenWork};
+use hiddenline::stages::optimize::estimate::{self, Motion, PenWork};
 use hiddenline::stages::optimize::{
     Effort, OptimizeOptions, Watch, optimize_watched, split_by_distance,
 };
@@ -12,7 +12,7 @@ use hiddenline::stages::plot::{Pen, Plot};
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::write::Format;
 
-use super::machine::{MachineError, MachineTarget};
+use super::machine::{Machine, MachineError};
 use super::stats::PlotStats;
 use super::values::{self, PenText};
 
@@ -54,7 +54,7 @@ pub(super) struct PlotArgs {
     /// (default), axidraw, grbl. A configuration file can have more: [machine.NAME].
     #[arg(long, value_name = "NAME", conflicts_with = "gcode_profile")]
     machine: Option<String>,
-    /// Templates of a G-code machine of your own, as TOML
+    /// Templates for your own G-code machine, as TOML
     #[arg(long, value_name = "FILE")]
     gcode_profile: Option<PathBuf>,
     /// The pen for visible or hidden lines, or for one kind of them: WHAT=NUMBER[:WIDTH[:COLOR]]
@@ -62,7 +62,7 @@ pub(super) struct PlotArgs {
     /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer. For AxiDraw,
     /// speed=PERCENT, height=PERCENT, delay=MS and pause may follow, as in
     /// visible=1:0.3mm:black:speed=30:pause; they are written into the layer's label in SVG. WHAT is
-    /// visible, hidden, outline, hidden1, hidden2 … for lines covered so often, or a kind of line.
+    /// visible, hidden, outline, hidden1, hidden2 … for lines behind that many faces, or a kind of line.
     #[arg(long = "pen", value_name = "PEN", value_parser = values::pen)]
     pens: Vec<PenText>,
 }
@@ -86,8 +86,8 @@ pub(super) struct Plotting {
 
 impl PlotArgs {
     /// The machine to write for.
-    pub(super) fn target(&self, format: Format) -> Result<MachineTarget, MachineError> {
-        MachineTarget::new(format, self.machine.as_deref(), self.gcode_profile.as_deref())
+    pub(super) fn machine(&self, format: Format) -> Result<Machine, MachineError> {
+        Machine::new(format, self.machine.as_deref(), self.gcode_profile.as_deref())
     }
 
     /// Files that these options name.
@@ -134,7 +134,7 @@ pub(super) struct Finished {
 }
 
 impl Plotting {
-    /// Whether kinds of line or hidden levels have pens of their own.
+    /// Whether kinds of line or hidden levels have their own pens.
     pub(super) fn has_pens_by_kind(&self) -> bool {
         let by_kind = |drawn| matches!(drawn, PenRole::Kind(_) | PenRole::HiddenLevel(_));
         self.apart_by_kind || self.pens.iter().any(|pen| by_kind(pen.drawn))
@@ -180,7 +180,7 @@ impl Plotting {
         self.effort
     }
 
-    /// The pens; `width_mm` is the width of those that have none of their own.
+    /// The pens; `width_mm` is the width of those given without one.
     pub(super) fn pens(&self, width_mm: f64) -> Vec<PenRule> {
         let rule = |pen: &PenText| PenRule {
             drawn: pen.drawn,
@@ -198,11 +198,11 @@ impl Plotting {
     pub(super) fn finish(
         &self,
         plot: Plot,
-        target: &MachineTarget,
+        motion: &Motion,
         usual: &OptimizeOptions,
         watch: &mut Watch<'_>,
     ) -> Finished {
-        let work = |plot: &Plot| -> PenWork { estimate::estimate(plot, &target.motion).work() };
+        let work = |plot: &Plot| -> PenWork { estimate::estimate(plot, motion).work() };
         let options = OptimizeOptions {
             join_tolerance_mm: self.join_tolerance_mm.or(usual.join_tolerance_mm),
             overlap_mm: self.overlap_mm.unwrap_or(usual.overlap_mm),

@@ -25,15 +25,15 @@ use super::scene::Subject;
 const EXAMPLES: &str = "\
 Examples:
   hiddenline preview bunny.stl -o bunny.png
-      A shaded picture from where `draw` looks, too.
+      A shaded picture, from the same view as `draw`.
   hiddenline preview house.obj --up-axis y --edges --size 1600x1200 -o house.png
-      With the visible lines on it.
+      With the visible lines on top.
   hiddenline preview spot.obj --shading smooth --engine a-buffer -o spot.png
       Curved surfaces, smooth borders.
   hiddenline preview engine.stl --engine a-buffer --opacity 0.4 -o glass.png
       As if made of glass.
   hiddenline preview part.stl --view top --show depth -o heights.png
-      What is nearer is lighter.
+      Nearer is lighter.
   hiddenline preview part.stl --tone -o tone.png
       How light each point is, as gray, for hatching.
   hiddenline preview --expr \"sin(r)/r\" --x=-9:9 --y=-9:9 -o hat.png
@@ -46,8 +46,8 @@ const DEFAULT_SAMPLES: usize = 200;
 
 /// Make a shaded picture of models
 ///
-/// Reads what `draw` reads, looks from where `draw` looks, and writes a PNG, for a look before a pen
-/// begins. All engines decide each pixel alike.
+/// Takes the same models and the same camera as `draw`, and writes a PNG: a look before you plot. All
+/// engines show the same faces.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct PreviewArgs {
@@ -60,7 +60,7 @@ pub(super) struct PreviewArgs {
     /// File to write, a PNG; `-` is standard output
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
-    /// Threads to work with [default: all]
+    /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     #[arg(help_heading = "Output")]
     threads: Option<u16>,
@@ -70,7 +70,7 @@ pub(super) struct PreviewArgs {
     /// Print nothing but errors
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
-    /// Take the settings called NAME in the configuration files
+    /// Use the preset called NAME from the configuration files
     #[arg(long, value_name = "NAME", help_heading = "Output")]
     preset: Option<String>,
 }
@@ -100,12 +100,12 @@ impl PreviewArgs {
             options: picture.options()?,
             edges: picture.edges.then_some(picture.lines),
             engine: picture.engine_name(),
-            output: OutputOptions::picture(path, threads.map(usize::from), stats, quiet)?,
+            output: OutputOptions::picture(path, threads.map(usize::from), stats, quiet),
         })
     }
 }
 
-/// Refuses the name of another kind of file than a PNG; what is no file may be called anything.
+/// Refuses names of files other than PNG; devices may have any name.
 fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
     let Some(path) = path else { return Ok(()) };
     let is_device = path.metadata().is_ok_and(|found| !found.is_file());
@@ -146,7 +146,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     })
 }
 
-/// Why there is no picture, with the remedy.
+/// Why a picture cannot be made, with the remedy.
 #[derive(Debug, thiserror::Error)]
 #[error("{}", with_remedy(.0))]
 struct PictureError(#[from] PreviewError);

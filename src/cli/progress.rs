@@ -1,5 +1,5 @@
-//! A line on the terminal that says what is being done, once the work takes over a second, and how
-//! much of it is done where that is known.
+//! A line on the terminal that shows the current stage once the work takes over a second, and how much
+//! of it is done if that is known.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -15,14 +15,14 @@ const STEPS: u64 = 1000;
 const WITHOUT_SHARE: &str = "{spinner} {msg} {elapsed}";
 const WITH_SHARE: &str = "{spinner} {msg} {bar:30} {percent}% {elapsed}, {eta} left";
 
-/// Shown while it lives.
+/// Shown until it is dropped.
 pub(super) struct Progress {
     bar: ProgressBar,
     waiting: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
-    /// Shows nothing when `quiet`, or when standard error is no terminal.
+    /// Shows nothing when `quiet`, or when standard error is not a terminal.
     pub(super) fn new(quiet: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         if quiet || !std::io::stderr().is_terminal() {
@@ -41,7 +41,7 @@ impl Progress {
         progress
     }
 
-    /// Says what is being done now.
+    /// Shows the current stage.
     pub(super) fn stage(&self, what: &'static str) {
         self.bar.set_message(what);
         if self.bar.length().is_some() {
@@ -50,7 +50,7 @@ impl Progress {
         }
     }
 
-    /// Shows which share of the stage is done, from 0 to 1, and the time left.
+    /// Shows how much of the stage is done, from 0 to 1, and the time left.
     pub(super) fn share(&self, share: f64) {
         if self.waiting.is_none() {
             return;

@@ -14,7 +14,7 @@ use super::paper::Notes;
 use super::progress::Progress;
 use super::stats::Stats;
 
-/// What is drawn: a scene, from where it is looked at, and what reading it has to tell.
+/// What is drawn: a scene, the camera, and what reading had to report.
 pub(super) struct Subject {
     pub(super) scene: Scene,
     pub(super) camera: Camera,
@@ -22,8 +22,8 @@ pub(super) struct Subject {
 }
 
 impl Subject {
-    /// Reads a mesh and finds its edges, where faces cross if `lines` ask for that, and, if there are
-    /// lines to draw that need not be exact, where bent faces are folded and edges lie flush.
+    /// Reads a mesh and finds its edges; also where faces cross if `lines` include intersections, and where
+    /// bent faces fold and edges are flush if `finds_bends`.
     pub(super) fn read(
         mesh: impl FnOnce() -> Result<(Mesh, Notes), Box<dyn Error>>,
         view: &ViewSource,

@@ -1,4 +1,4 @@
-//! The statistics of `--stats`: what a run counted and how long its stages took.
+//! The statistics of `--stats`: counts of a run, and how long its stages took.
 
 use std::borrow::Cow;
 
@@ -13,7 +13,7 @@ use serde::Serialize;
 pub(super) struct Stats {
     /// Name of the engine that drew.
     pub(super) engine: Cow<'static, str>,
-    /// Threads that worked.
+    /// Number of threads.
     pub(super) threads: usize,
     /// Distinct vertices, after cleaning.
     pub(super) vertices: usize,
@@ -31,28 +31,27 @@ pub(super) struct Stats {
     pub(super) strokes: usize,
     /// Points of all strokes.
     pub(super) points: usize,
-    /// Most memory that was resident at once; 0 where the system does not tell.
+    /// Peak resident memory in bytes; 0 if the system does not say.
     pub(super) peak_bytes: u64,
     /// Wall time of the stages.
     pub(super) seconds: Seconds,
-    /// What the engine counted.
+    /// Counts of the engine.
     pub(super) counts: Counts,
-    /// What the pens do, before and after the strokes were joined and ordered; none where there
-    /// are no pens.
+    /// The work of the pens, before and after strokes were joined and ordered; none without pens.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) plot: Option<PlotStats>,
 }
 
-/// What the pens do before and after joining and ordering.
+/// The work of the pens before and after joining and ordering.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub(super) struct PlotStats {
-    /// As the strokes came.
+    /// Before joining and ordering.
     pub(super) before: PenWork,
-    /// As they are written.
+    /// As written.
     pub(super) after: PenWork,
 }
 
-/// What the engine counted.
+/// Counts of the engine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub(super) struct Counts {
     /// Pairs of segment and triangle that were tested.
@@ -73,13 +72,13 @@ pub(super) struct Counts {
     pub(super) back_edges: u64,
     /// Pairs of triangles whose boxes touch, tested for lines of intersection.
     pub(super) intersection_pairs: u64,
-    /// What the face engine counted, where areas are filled.
+    /// Counts of the face engine, if areas are filled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) fill: Option<FaceWork>,
 }
 
 impl Stats {
-    /// Adds what drawing lines counted.
+    /// Adds the counts of drawing lines.
     pub(super) fn add(&mut self, drawn: &DrawOutput) {
         self.engine = drawn.engine.into();
         self.drawn_edges = drawn.n_lines;
@@ -107,7 +106,7 @@ impl Stats {
     }
 }
 
-/// The most memory this process ever had resident, in bytes; 0 where the system does not tell.
+/// Peak resident memory of this process in bytes; 0 if the system does not say.
 pub(super) fn peak_bytes() -> u64 {
     std::fs::read_to_string("/proc/self/status").map_or(0, |status| peak_in_status(&status))
 }

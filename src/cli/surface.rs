@@ -1,8 +1,8 @@
 //! `hiddenline surface`: from formulas, heights or points to a drawing's file.
 
 mod args;
-mod sheet_args;
-mod sheets;
+mod input;
+mod input_args;
 
 use std::error::Error;
 
@@ -17,18 +17,18 @@ use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::Format;
 
 pub(super) use self::args::SurfaceArgs;
-pub(super) use self::sheet_args::SheetArgs;
-pub(super) use self::sheets::Sheets;
-use self::sheets::with_samples;
+pub(super) use self::input::SurfaceInput;
+use self::input::with_samples;
+pub(super) use self::input_args::SurfaceInputArgs;
 use super::camera::{ViewSource, with_remedy};
 use super::output::OutputOptions;
-use super::paper::{Run, Sheet, page_error};
+use super::paper::{PlacedPage, Run, page_error};
 use super::{config, source};
 use hiddenline::stages::write::dxf::DxfScale;
 
 /// What is to be done.
 pub(super) struct Job {
-    sheets: Sheets,
+    sheets: SurfaceInput,
     view: ViewSource,
     lines: SurfaceLines,
     page: PageOptions,
@@ -71,7 +71,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     } else {
         usual
     };
-    let sheet = Sheet {
+    let sheet = PlacedPage {
         camera: drawing.camera,
         page: drawing.page,
         extent: drawing.extent,

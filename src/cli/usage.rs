@@ -5,14 +5,14 @@ use clap::{ArgMatches, Command, CommandFactory};
 
 use super::Cli;
 
-/// Options of other programs that say how large a picture is.
+/// Options of other programs for the size of a picture.
 const SIZES: [&str; 5] = ["--width", "--height", "--size", "--resolution", "--pixels"];
 
-/// The command line with all that holds for every option.
+/// The command line, with what applies to every option.
 pub(super) fn command() -> Command {
     Cli::command().mut_subcommands(|command| {
         command.mut_args(|arg| {
-            // So that the parser of the value says what it expects, not clap that -5 is no option.
+            // So that the parser of the value says what it expects, not clap that -5 is not an option.
             let is_option = arg.get_long().is_some() && arg.get_action().takes_values();
             if is_option && !arg.is_allow_hyphen_values_set() {
                 arg.allow_negative_numbers(true)
@@ -23,7 +23,8 @@ pub(super) fn command() -> Command {
     })
 }
 
-/// Parses what was typed; bad usage ends the program, but for what is missing: settings may give it.
+/// Parses what was typed. Bad usage ends the program, except for missing arguments, which settings may
+/// provide.
 pub(super) fn parse_in_part(command: &Command, typed: &[std::ffi::OsString]) -> ArgMatches {
     let parse = |command: Command| command.try_get_matches_from(typed);
     let parsed = parse(command.clone()).or_else(|error| match error.kind() {
@@ -33,7 +34,7 @@ pub(super) fn parse_in_part(command: &Command, typed: &[std::ffi::OsString]) -> 
     parsed.unwrap_or_else(|error| with_hints(error, command, typed).exit())
 }
 
-/// Ends the program as clap does for arguments that are wrong.
+/// Ends the program as clap does for invalid arguments.
 pub(super) fn exit_with(name: &str, message: &str) -> ! {
     let mut command = command();
     command.build();
@@ -41,8 +42,7 @@ pub(super) fn exit_with(name: &str, message: &str) -> ! {
     command.error(ErrorKind::ValueValidation, message).exit()
 }
 
-/// Says which option there is instead of an unknown one, where clap only knows how to make a file
-/// name of it.
+/// Suggests an option instead of an unknown one, where clap only suggests to take it for a file name.
 fn with_hints(
     mut error: clap::Error,
     command: &Command,

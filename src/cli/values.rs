@@ -49,7 +49,7 @@ pub(super) fn vector(text: &str) -> Result<DVec3, String> {
 /// Three numbers with commas between them that are not all zero.
 pub(super) fn direction(text: &str) -> Result<DVec3, String> {
     vector(text)
-        .and_then(|v| if v == DVec3::ZERO { Err("0,0,0 is no direction".into()) } else { Ok(v) })
+        .and_then(|v| if v == DVec3::ZERO { Err("0,0,0 is not a direction".into()) } else { Ok(v) })
 }
 
 /// A length in millimeters, 0 or more.
@@ -121,7 +121,7 @@ pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
             "outline" => lines.with_outline(),
             other => {
                 let hint = suggestion(other, KINDS_OF_LINE.into_iter());
-                return Err(format!("`{other}` is no kind of line{hint}"));
+                return Err(format!("unknown line kind `{other}`{hint}"));
             }
         })
     })
@@ -231,7 +231,7 @@ fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
 /// The bytes of a color by name or as `#rgb`, `#rrggbb`, `rgb(…)`.
 pub(super) fn rgb(text: &str) -> Result<[u8; 3], String> {
     let color: svgtypes::Color =
-        text.parse().map_err(|_| format!("`{text}` is no color; give a name or #rrggbb"))?;
+        text.parse().map_err(|_| format!("`{text}` is not a color; give a name or #rrggbb"))?;
     Ok([color.red, color.green, color.blue])
 }
 

@@ -20,6 +20,21 @@ pub enum UpAxis {
     Z,
 }
 
+impl UpAxis {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 4] = [Self::Y, Self::Z, Self::NegativeY, Self::NegativeZ];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::NegativeY => "-y",
+            Self::NegativeZ => "-z",
+        }
+    }
+}
+
 /// How a model is placed in the scene; applied in the order of the fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {

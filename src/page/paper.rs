@@ -31,14 +31,16 @@ const NAMED: [(&str, f64, f64); 10] = [
     ("tabloid", 279.4, 431.8),
 ];
 
-/// Why a text is no size of paper or no length.
+/// Why a text is not a paper size or not a length.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PaperError {
     /// Neither a name nor two lengths.
-    #[error("`{0}` is no paper: give a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm")]
+    #[error(
+        "`{0}` is not a paper size: give a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm"
+    )]
     Unknown(String),
     /// Not a number with a unit.
-    #[error("`{0}` is no length: give a number, and mm, cm or in if it is not in millimeters")]
+    #[error("`{0}` is not a length: give a number, and mm, cm or in if it is not in millimeters")]
     Length(String),
     /// Zero, negative, or beyond any paper.
     #[error("`{0}`: width and height must be above 0 and at most 100 m")]
@@ -121,7 +123,7 @@ impl FromStr for Paper {
 /// Reads a length as `10`, `10mm`, `1cm` or `0.5in`, in millimeters.
 ///
 /// # Errors
-/// The text is no finite number with one of these units.
+/// The text is not a finite number with one of these units.
 pub fn parse_length_mm(text: &str) -> Result<f64, PaperError> {
     let (value, unit_mm) = split_unit(text.trim());
     number(value)

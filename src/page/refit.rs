@@ -35,6 +35,20 @@ pub enum Crop {
     None,
 }
 
+impl Crop {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 3] = [Self::Page, Self::Margin, Self::None];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Page => "page",
+            Self::Margin => "margin",
+            Self::None => "none",
+        }
+    }
+}
+
 /// A plot, and how much of its ink was cut off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cropped {

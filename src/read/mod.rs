@@ -61,6 +61,22 @@ pub enum ModelFormat {
 }
 
 impl ModelFormat {
+    /// All formats.
+    pub const ALL: [Self; 6] =
+        [Self::Obj, Self::Stl, Self::Ply, Self::Off, Self::Gltf, Self::ThreeMf];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::Ply => "ply",
+            Self::Off => "off",
+            Self::Gltf => "gltf",
+            Self::ThreeMf => "3mf",
+        }
+    }
+
     /// The format of a file name's extension, in any letter case.
     pub fn from_name(path: &Path) -> Option<Self> {
         Self::from_word(path.extension()?.to_str()?)

@@ -1,13 +1,13 @@
-//! Fills: from the regions that a face engine found to colored areas, by ink if there are few.
+//! Fills: from the regions that a face engine found to colored areas, or areas for each ink.
 //!
 //! ```text
 //!  engines::face ─► Painting ─► light, depth cue, materials ─► inks ────► Filled
-//!                   pieces      a color for each face          nearest    areas, a layer an ink
+//!                   pieces      a color for each face          nearest    areas, one layer per ink
 //! ```
 //!
-//! Shading is flat: a face has one color, by its Newell normal. Pieces that lie beside each other and
-//! are of one face are one area; with inks, all that meets of one ink is one area, and areas never
-//! overlap: what is painted over is taken away first.
+//! Shading is flat: a face has one color, by its Newell normal. Adjacent pieces of one face make one area.
+//! With inks, adjacent pieces of one ink make one area, and areas never overlap: what is painted over is
+//! subtracted first.
 
 use std::collections::BTreeMap;
 
@@ -30,17 +30,17 @@ use crate::shading::light::{
 /// Most inks.
 pub const MOST_INKS: usize = 64;
 
-/// Width of the outline that closes seams, in millimetres, unless set otherwise: thinner than any pen
-/// and wide enough for what smooths borders on screen and in print.
+/// Width of the outline that closes seams, in millimeters, unless set otherwise: thinner than any pen,
+/// and wide enough where screens and printers smooth borders.
 pub const DEFAULT_SEAM_MM: f64 = 0.05;
 
-/// What the colors tell.
+/// What the colors show.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Show {
+pub enum Coloring {
     /// Faces in the light.
     #[default]
     Shaded,
-    /// The order of painting: blue first, green, red last.
+    /// The order of painting: blue first, then green, red last.
     Order,
     /// How near faces are: the nearest white, the farthest dark.
     Depth,
@@ -48,10 +48,25 @@ pub enum Show {
     Splits,
 }
 
+impl Coloring {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 4] = [Self::Shaded, Self::Order, Self::Depth, Self::Splits];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shaded => "shaded",
+            Self::Order => "order",
+            Self::Depth => "depth",
+            Self::Splits => "splits",
+        }
+    }
+}
+
 /// The inks of a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Palette {
-    /// So many grays, evenly from the darkest to the lightest tone of the picture.
+    /// This many grays, evenly from the darkest to the lightest tone of the picture.
     Grays(usize),
     /// These colors.
     Inks(Vec<[u8; 3]>),
@@ -60,42 +75,79 @@ pub enum Palette {
 /// How faces are filled.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FillOptions {
-    /// How visible regions are found.
+    /// The visible-surface algorithm.
     pub engine: FaceEngine,
-    /// What the engine is told.
+    /// Options of the engine.
     pub settings: FaceOptions,
-    /// Areas lie beside each other, also where the engine paints them over each other; with a palette
-    /// they always do.
+    /// Areas never overlap, even if the engine paints them over each other; with a palette they never do.
     pub disjoint: bool,
-    /// What the colors tell.
-    pub show: Show,
+    /// What the colors show.
+    pub show: Coloring,
     /// Where the light comes from, in world directions; `None` for the viewer's left shoulder.
     pub light: Option<DVec3>,
-    /// How much of the farthest face's color becomes paper, from 0 to 1; nearer ones lose less.
+    /// How much the farthest face fades into the paper, from 0 to 1; nearer faces fade less.
     pub depth_cue: f64,
-    /// The color of faces that have none of their material; `None` for that of paper.
+    /// The color of faces whose material has none; `None` for the color of paper.
     pub paint: Option<[u8; 3]>,
-    /// Colors of materials by their name, for each model of the scene; they go before the colors that
-    /// the model itself gives.
+    /// Colors of materials by name, for each model of the scene; they take precedence over the colors in
+    /// the model itself.
     pub materials: Vec<BTreeMap<String, [u8; 3]>>,
     /// The inks; `None` for any number of colors.
     pub palette: Option<Palette>,
 }
 
-/// Why there is no fill.
+impl FillOptions {
+    /// The visible-surface algorithm.
+    #[must_use]
+    pub fn engine(self, engine: FaceEngine) -> Self {
+        Self { engine, ..self }
+    }
+
+    /// Only these inks, each on its own layer.
+    #[must_use]
+    pub fn palette(self, palette: Palette) -> Self {
+        Self { palette: Some(palette), ..self }
+    }
+
+    /// The color of faces whose material has none, as red, green and blue.
+    #[must_use]
+    pub fn paint(self, color: [u8; 3]) -> Self {
+        Self { paint: Some(color), ..self }
+    }
+
+    /// Where the light comes from: a direction in the world, toward the light.
+    #[must_use]
+    pub fn light(self, direction: DVec3) -> Self {
+        Self { light: Some(direction), ..self }
+    }
+
+    /// How much the farthest face fades into the paper, from 0 to 1.
+    #[must_use]
+    pub fn depth_cue(self, share: f64) -> Self {
+        Self { depth_cue: share, ..self }
+    }
+
+    /// Areas never overlap.
+    #[must_use]
+    pub fn disjoint(self) -> Self {
+        Self { disjoint: true, ..self }
+    }
+}
+
+/// Why faces cannot be filled.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FillError {
-    /// The engine does not begin.
+    /// The engine cannot take the scene.
     #[error(transparent)]
     Engine(#[from] FaceError),
     /// A palette without inks or with too many.
     #[error("a palette has from 1 to {MOST_INKS} inks, not {0}")]
     Inks(usize),
     /// A palette is for shaded pictures.
-    #[error("order, depth and splits are told by many colors; leave out the palette")]
+    #[error("order, depth and splits need many colors; leave out the palette")]
     DebugInks,
     /// The engine does not paint one face over another.
-    #[error("{0} lays areas beside each other, and painting over needs them from far to near")]
+    #[error("{0} makes areas side by side, and painting over needs them from far to near")]
     NotPaintedOver(&'static str),
 }
 
@@ -110,7 +162,7 @@ pub struct Filled {
     pub is_disjoint: bool,
     /// How many pieces the engine made.
     pub n_pieces: usize,
-    /// What the engine counted, if it was asked to find the regions.
+    /// How much work the engine did, if it found the regions.
     pub work: Option<FaceWork>,
 }
 
@@ -123,8 +175,8 @@ pub fn fill(scene: &Scene, camera: &Camera, options: &FillOptions) -> Result<Fil
     fill_prepared(&Prepared::new(scene, options.engine)?, camera, options)
 }
 
-/// The same for a scene that is ready for an engine, as for many views of it; the engine in the
-/// options is not looked at.
+/// The same for a scene prepared for an engine, as for many views of it; the engine in the options is
+/// ignored.
 ///
 /// # Errors
 /// See [`FillError`].
@@ -140,7 +192,7 @@ pub fn fill_prepared(
 }
 
 impl FillOptions {
-    /// Says whether these go together.
+    /// Checks that these go together.
     ///
     /// # Errors
     /// [`FillError::Inks`], [`FillError::DebugInks`].
@@ -150,7 +202,7 @@ impl FillOptions {
             Some(Palette::Grays(n)) => *n,
             Some(Palette::Inks(inks)) => inks.len(),
         };
-        if self.show != Show::Shaded {
+        if self.show != Coloring::Shaded {
             return Err(FillError::DebugInks);
         }
         if (1..=MOST_INKS).contains(&n) { Ok(()) } else { Err(FillError::Inks(n)) }
@@ -168,7 +220,7 @@ pub fn fill_painting(
     let colors = colors(scene, camera, painting, options);
     let n_pieces = painting.len();
     let wants_disjoint = options.disjoint || options.palette.is_some();
-    let debugs_pieces = matches!(options.show, Show::Order | Show::Splits);
+    let debugs_pieces = matches!(options.show, Coloring::Order | Coloring::Splits);
     let layers = match &options.palette {
         Some(palette) => layers_by_ink(painting, &colors, palette),
         None if painting.is_disjoint || !wants_disjoint || debugs_pieces => {
@@ -206,11 +258,13 @@ fn colors(
     let faces: Vec<u32> = painting.pieces().map(|piece| piece.face).collect();
     let last = faces.len().saturating_sub(1).max(1) as f64;
     match options.show {
-        Show::Order => (0..faces.len()).map(|number| order_color(number as f64 / last)).collect(),
-        Show::Splits => {
+        Coloring::Order => {
+            (0..faces.len()).map(|number| order_color(number as f64 / last)).collect()
+        }
+        Coloring::Splits => {
             (0..faces.len() as u32).map(|number| to_bytes(number_color(number))).collect()
         }
-        Show::Shaded | Show::Depth => {
+        Coloring::Shaded | Coloring::Depth => {
             let shader = Shader::new(scene, camera, &faces, options);
             faces.par_iter().map(|&face| to_bytes(shader.color(face))).collect()
         }
@@ -221,7 +275,7 @@ struct Shader<'a> {
     scene: &'a Scene,
     camera: &'a Camera,
     light: Light,
-    show: Show,
+    show: Coloring,
     depth_cue: f64,
     paint: DVec3,
     /// The color of each part of the mesh.
@@ -270,7 +324,7 @@ impl<'a> Shader<'a> {
         let (nearest, farthest) = self.distances;
         let part = ((self.distance(face) - nearest) / (farthest - nearest)).clamp(0.0, 1.0);
         let part = if part.is_nan() { 0.0 } else { part };
-        if self.show == Show::Depth {
+        if self.show == Coloring::Depth {
             return DVec3::splat(1.0 - part * (1.0 - FARTHEST));
         }
         let positions = self.scene.mesh().positions();
@@ -298,7 +352,7 @@ fn as_painted(painting: &Painting, colors: &[[u8; 3]]) -> FillLayer {
     FillLayer { name: "fills".into(), color: colors.first().copied().unwrap_or_default(), fills }
 }
 
-/// All that is nearest to one ink joined, ink by ink.
+/// The pieces nearest to each ink, joined ink by ink.
 fn layers_by_ink(painting: &Painting, colors: &[[u8; 3]], palette: &Palette) -> Vec<FillLayer> {
     let inks = inks(colors, palette);
     let (regions, grid) = merge::seen(painting);

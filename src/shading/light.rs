@@ -1,4 +1,4 @@
-//! Light on faces, and colors that tell faces or an order apart.
+//! Light on faces, and colors that distinguish faces or show an order.
 //!
 //! ```text
 //!            light         tone = ambient + (1 − ambient) · max(0, n · l)
@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use crate::camera::Camera;
 
-/// The tone of what is turned away from the light.
+/// The tone of faces turned away from the light.
 const AMBIENT: f64 = 0.25;
 
 /// The default light: to the left of the viewer, above, and behind, along right, up and forward.
@@ -28,13 +28,13 @@ pub const FARTHEST: f64 = 0.1;
 /// Light from one direction, as from the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// Towards the light, of length one.
+    /// Unit vector toward the light.
     towards: DVec3,
 }
 
 impl Light {
-    /// Light from a direction of the world; `None`, or one without direction, is light over the
-    /// viewer's left shoulder.
+    /// Light from a direction in the world; `None`, or a zero vector, is light over the viewer's left
+    /// shoulder.
     pub fn new(from: Option<DVec3>, camera: &Camera) -> Self {
         let frame = camera.frame();
         let DVec3 { x, y, z } = LEFT_SHOULDER;
@@ -56,7 +56,7 @@ pub fn parts(color: [u8; 3]) -> DVec3 {
 
 /// A color with parts from 0 to 1 as bytes.
 pub fn to_bytes(color: DVec3) -> [u8; 3] {
-    // The cast cuts off, and keeps within a byte what is not.
+    // The cast truncates and saturates.
     (color * 255.0 + 0.5).to_array().map(|part| part as u8)
 }
 
@@ -71,8 +71,7 @@ pub fn number_color(number: u32) -> DVec3 {
     DVec3::new(part(16), part(8), part(0))
 }
 
-/// The color of a place in an order from 0, the first, to 1, the last: blue, green, red, with what
-/// lies between.
+/// The color of a position in an order, from 0 (first) to 1 (last): from blue through green to red.
 pub fn order_color(place: f64) -> [u8; 3] {
     let of = |near: f64| (208.0 * (1.0 - (2.0 * place - near).abs()).clamp(0.0, 1.0)) as u8;
     [of(2.0), of(1.0), of(0.0)]

@@ -9,14 +9,14 @@
 //!                                ░░░░░          └───┘
 //! ```
 //!
-//! What is left to see is the drawing of [`draw`](crate::draw): the same edges, whole where they are
-//! visible, without one computation of visibility along a line. It is a picture, not a set of strokes:
-//! hidden edges are still there beneath the white.
+//! What remains visible is the drawing of [`draw`](crate::draw): the same edges, found without computing
+//! visibility along any line. It is a picture, not a set of strokes: hidden edges are still there beneath
+//! the white.
 //!
 //! Source: lecture notes on visibility (Slovak), section 5, the first of its two ways to remove hidden
 //! lines.
 //!
-//! Cannot: draw lines that are no edges of a painted face, such as those in which faces cross.
+//! Cannot: draw lines that are not edges of a painted face, such as those in which faces cross.
 
 use glam::DVec2;
 
@@ -31,7 +31,7 @@ use crate::shading::fill::{FillError, Filled};
 /// The paper.
 const WHITE: [u8; 3] = [0xff; 3];
 
-/// A picture, and what it lacks.
+/// A picture, and how many lines it lacks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaintedOver {
     /// White areas, each with the edges on its border as outlines.
@@ -41,13 +41,13 @@ pub struct PaintedOver {
     pub n_left_out: usize,
 }
 
-/// Paints faces white from far to near, and on each those of its edges that `lines` selects.
+/// Paints faces white from far to near, each with those of its edges that `lines` selects.
 ///
 /// Of edges selected as outline only, nothing is drawn. `crease_deg` is in degrees. O(fragments) after
 /// the engine.
 ///
 /// # Errors
-/// [`FillError::NotPaintedOver`] for an engine whose areas lie beside each other; those of the engine.
+/// [`FillError::NotPaintedOver`] for an engine whose areas are side by side; errors of the engine.
 pub fn paint_over(
     prepared: &Prepared,
     camera: &Camera,
@@ -86,7 +86,7 @@ fn is_on_painted_face(view: &ViewedScene, line: u32) -> bool {
         && topology.uses(line).iter().any(|along| view.facing(along.face()) != Sign::Zero)
 }
 
-/// The parts of a piece's border that lie on drawn lines.
+/// The parts of a piece's border that are on drawn lines.
 fn outlines(piece: &PaintedPiece, is_drawn: &[bool]) -> Vec<Vec<DVec2>> {
     let mut outlines = Vec::new();
     for ring in piece.rings() {
@@ -100,7 +100,7 @@ fn push_runs(ring: &Ring, is_drawn: &[bool], outlines: &mut Vec<Vec<DVec2>>) {
     let n = ring.points.len();
     // NO_LINE is beyond all lines.
     let is_drawn = |side: usize| is_drawn.get(ring.lines[side] as usize) == Some(&true);
-    // Begin after a gap, so that no run is torn apart where the ring begins.
+    // Start after a gap, so that no run is split where the ring begins.
     let first = (0..n).find(|&side| !is_drawn(side)).map_or(0, |gap| gap + 1);
     let mut run: Vec<DVec2> = Vec::new();
     for side in (first..first + n).map(|side| side % n) {

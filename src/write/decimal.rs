@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A number rounded to so many decimals, without zeros at the end and never `-0`.
+/// A number rounded to a number of decimals, without zeros at the end and never `-0`.
 pub(super) struct Decimal {
     value: f64,
     decimals: u32,

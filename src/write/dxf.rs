@@ -17,7 +17,7 @@ use crate::plot::{Layer, Plot};
 /// Decimals of a millimeter on paper.
 const DECIMALS: i32 = 4;
 /// In the flags of a polyline: its linetype runs on around corners. Without it each segment would
-/// start a dash of its own, and short segments would be solid.
+/// start its own dash, and short segments would be solid.
 const CONTINUOUS_LINETYPE: u32 = 128;
 
 /// What the numbers in the file mean.
@@ -50,6 +50,29 @@ pub enum DxfUnit {
 }
 
 impl DxfUnit {
+    /// All units.
+    pub const ALL: [Self; 4] = [Self::Millimeter, Self::Centimeter, Self::Meter, Self::Inch];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Millimeter => "mm",
+            Self::Centimeter => "cm",
+            Self::Meter => "m",
+            Self::Inch => "in",
+        }
+    }
+
+    /// Its length in millimeters.
+    pub fn mm(self) -> f64 {
+        match self {
+            Self::Millimeter => 1.0,
+            Self::Centimeter => 10.0,
+            Self::Meter => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
+
     /// The value of `$INSUNITS`.
     fn number(self) -> &'static str {
         match self {

@@ -29,9 +29,9 @@ pub struct GcodeProfile {
     pub flip_y: bool,
     /// Decimals of positions, 9 at most.
     pub decimals: u32,
-    /// Drawing speed in units a minute.
+    /// Drawing speed in units per minute.
     pub feed: f64,
-    /// Before everything.
+    /// At the start of the file.
     pub start: String,
     /// Raises the pen.
     pub pen_up: String,
@@ -48,11 +48,11 @@ pub struct GcodeProfile {
     /// After each layer.
     #[serde(default)]
     pub layer_end: String,
-    /// Between two layers, before the second one's start, to change pens; also before a first layer
+    /// Between two layers, before the start of the second one, to change pens; also before a first layer
     /// that asks for a pause.
     #[serde(default)]
     pub pen_change: String,
-    /// After everything.
+    /// At the end of the file.
     pub end: String,
     /// How the machine moves, to estimate the time.
     #[serde(default)]
@@ -99,7 +99,7 @@ pub enum GcodeError {
     UnknownPlaceholder {
         /// The template's name.
         template: &'static str,
-        /// What stands between the braces.
+        /// The name between the braces.
         placeholder: String,
         /// All placeholders.
         known: String,
@@ -107,12 +107,12 @@ pub enum GcodeError {
     /// The drawing speed is not a positive number.
     #[error("feed must be positive")]
     Feed,
-    /// The profiles do not read.
+    /// The profiles are not valid TOML.
     #[error("G-code profile: {0}")]
     Toml(#[from] toml::de::Error),
 }
 
-/// The profile that G-code is for unless another is named.
+/// The default G-code profile.
 pub const DEFAULT_PROFILE: &str = "grbl-servo";
 
 const PLACEHOLDERS: [&str; 10] =
@@ -150,7 +150,7 @@ impl GcodeProfile {
     /// Reads one profile from TOML.
     ///
     /// # Errors
-    /// What is missing or unknown, with the line, and unknown placeholders.
+    /// A setting is missing or unknown (with its line), or a placeholder is unknown.
     pub fn from_toml(text: &str) -> Result<Self, GcodeError> {
         let profile: Self = toml::from_str(text)?;
         profile.check()?;
@@ -285,7 +285,7 @@ impl Writer<'_> {
     }
 }
 
-/// Text that can stand in a comment of any dialect: printable ASCII without what ends one.
+/// Text that is valid in a comment of any dialect: printable ASCII without characters that end one.
 fn comment(text: &str) -> String {
     text.chars()
         .map(|c| if (c.is_ascii_graphic() || c == ' ') && !"();%".contains(c) { c } else { '_' })

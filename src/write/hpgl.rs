@@ -165,10 +165,10 @@ pub enum PlotterError {
     Toml(#[from] toml::de::Error),
 }
 
-/// The plotters known.
+/// The known plotters.
 ///
 /// # Errors
-/// None but for a defect in the list itself.
+/// Only for a defect in the list itself.
 pub fn machines() -> Result<Vec<Plotter>, PlotterError> {
     machines_from(include_str!("hpgl_machines.toml"))
 }

@@ -129,7 +129,7 @@ impl From<&Camera> for CameraRecord {
 #[derive(Debug, Error)]
 pub enum ReadCameraError {
     /// It is not JSON, or not a strokes file.
-    #[error("this is not a strokes file, which --format json writes: {0}")]
+    #[error("this is not a file of strokes as JSON: {0}")]
     Json(#[from] serde_json::Error),
     /// The numbers make no camera.
     #[error(transparent)]

@@ -103,7 +103,7 @@ pub(crate) fn known_extensions() -> String {
 /// A page has filled areas, and the format has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error(
-    "{} has lines only, no filled areas; write svg, pdf or png, or leave out the areas (draw)",
+    "{} holds lines only, no filled areas; SVG, PDF and PNG hold both",
     .0.name()
 )]
 pub struct NoFills(pub Format);

@@ -36,33 +36,30 @@ impl Default for Resolution {
     }
 }
 
-/// What a picture shows of how the pens go.
+/// What a picture shows of the pens' movements.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Marks {
-    /// The ways between strokes with the pen up, as thin red lines.
+    /// Pen-up travel, as thin red lines.
     pub travel: bool,
-    /// The order of the strokes by color, from blue for the first by green to red for the last; the
-    /// pens' own colors are then not seen.
+    /// The stroke order, by color: from blue for the first stroke through green to red for the last,
+    /// in place of the pens' own colors.
     pub order: bool,
 }
 
-/// Width of the lines that stand for ways with the pen up, in millimeters.
+/// Width of the lines that show pen-up travel, in millimeters.
 const TRAVEL_WIDTH_MM: f64 = 0.15;
 
 /// Color of these lines.
 const TRAVEL_COLOR: [u8; 3] = [0xe0, 0x40, 0x40];
 
-/// Colors that the order of strokes is told by.
+/// How many colors show the stroke order.
 const ORDER_COLORS: usize = 256;
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
 pub enum PngError {
     /// No pixels, or too many.
-    #[error(
-        "a picture of {width_px:.0} x {height_px:.0} pixels cannot be made; \
-             give another --dpi or --png-width"
-    )]
+    #[error("a picture of {width_px:.0} x {height_px:.0} pixels cannot be made")]
     Size {
         /// Width asked for.
         width_px: f64,
@@ -87,7 +84,7 @@ pub fn write(plot: &Plot, resolution: Resolution, out: &mut dyn io::Write) -> Re
     write_marked(plot, resolution, Marks::default(), out)
 }
 
-/// Writes a picture of `plot` that shows how the pens go, too. O(pixels + strokes).
+/// Writes a picture of `plot` that also shows the pens' movements. O(pixels + strokes).
 ///
 /// # Errors
 /// See [`PngError`].

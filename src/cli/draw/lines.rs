@@ -1,12 +1,13 @@
 //! Which lines are drawn, and how.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions};
 use hiddenline::stages::engines::edge::LineEngine;
 use hiddenline::stages::page::Dash;
 use hiddenline::stages::strokes::HiddenLines;
 
+use crate::cli::choice::one_of;
 use crate::cli::plotting::Plotting;
 use crate::cli::{config, values};
 
@@ -34,13 +35,13 @@ pub(super) struct LineArgs {
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_CREASE_DEG)]
     crease: f64,
-    /// Leave hidden lines out, or draw them on a layer of their own [default: none]
-    #[arg(long, value_enum)]
-    hidden: Option<Hidden>,
-    /// Draw hidden lines that are covered at most N times, each number on its own layer
+    /// Hidden lines: left out, or drawn on their own layer [default: none]
+    #[arg(long, value_parser = one_of::<HiddenLines>())]
+    hidden: Option<HiddenLines>,
+    /// Draw hidden lines behind at most N faces, each level on its own layer
     ///
     /// Every triangle in front of a line counts, so a solid body counts twice: its front and its
-    /// back. The lines are dashed unless --hidden solid is given; --pen hidden1=…, hidden2=… are
+    /// back. The lines are dashed unless --hidden solid is given; --pen hidden1=…, hidden2=… set
     /// their pens.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=99))]
     hidden_levels: Option<u32>,
@@ -48,37 +49,23 @@ pub(super) struct LineArgs {
     #[arg(long, value_name = "DASH,GAP", value_parser = values::dash, default_value = "2.5,1.25")]
     pub(super) dash: Dash,
     /// Hidden-line algorithm; all give the same drawing
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: EngineName,
-    /// Faces do not hide lines that lie this close to their plane, in model units
+    #[arg(long, value_parser = one_of::<LineEngine>(), default_value = LineEngine::Auto.name())]
+    engine: LineEngine,
+    /// Faces do not hide lines this close to their plane, in model units
     ///
-    /// Meant for parts that touch, but not exactly. The default is about what single precision
-    /// makes of the largest coordinate; 0 turns it off.
+    /// For parts that touch, but not exactly. The default is about the rounding of the largest
+    /// coordinate in single precision; 0 turns it off.
     #[arg(long, value_name = "D", value_parser = values::not_negative)]
     contact_tolerance: Option<f64>,
-    /// Visible strokes shorter than this on paper are dropped, such gaps in a line are closed
+    /// Drop visible strokes shorter than this on paper, and close gaps shorter than this in a line
     #[arg(long, value_name = "MM", value_parser = values::not_negative)]
     #[arg(default_value_t = DEFAULT_SHORTEST_STROKE_MM)]
     shortest_stroke: f64,
     /// Draw what is exactly visible: one stroke for each visible interval of each edge
     ///
-    /// Nothing is joined, dropped, dashed or drawn once for two: for comparisons, not for pens.
+    /// Nothing is joined, dropped, dashed or merged. For comparisons, not for plotting.
     #[arg(long, conflicts_with = "contact_tolerance")]
     pub(super) exact: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Hidden {
-    None,
-    Dashed,
-    Solid,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum EngineName {
-    Auto,
-    Roberts,
-    Appel,
 }
 
 impl LineArgs {
@@ -110,9 +97,9 @@ impl LineArgs {
 
     pub(super) fn options(&self) -> DrawOptions {
         let hidden = match self.hidden {
-            None | Some(Hidden::None) if self.hidden_levels.is_none() => HiddenLines::None,
-            Some(Hidden::None) if config::is_typed("--hidden") => HiddenLines::None,
-            Some(Hidden::Solid) => HiddenLines::Solid,
+            None | Some(HiddenLines::None) if self.hidden_levels.is_none() => HiddenLines::None,
+            Some(HiddenLines::None) if config::is_typed("--hidden") => HiddenLines::None,
+            Some(HiddenLines::Solid) => HiddenLines::Solid,
             _ if self.exact => HiddenLines::Solid,
             _ => HiddenLines::Dashed,
         };
@@ -122,11 +109,7 @@ impl LineArgs {
             hidden,
             hidden_levels: self.hidden_levels.filter(|_| hidden != HiddenLines::None),
             exact: self.exact,
-            engine: match self.engine {
-                EngineName::Auto => LineEngine::Auto,
-                EngineName::Roberts => LineEngine::Roberts,
-                EngineName::Appel => LineEngine::Appel,
-            },
+            engine: self.engine,
             contact_tolerance: self.contact_tolerance,
             shortest_stroke_mm: self.shortest_stroke,
             apart_by_kind: false,

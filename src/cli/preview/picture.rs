@@ -6,22 +6,24 @@ use hiddenline::stages::classify::LineSelection;
 use hiddenline::stages::engines::image::ImageEngine;
 use hiddenline::stages::shading::preview::{Pixels, PreviewOptions, Show};
 
+use crate::cli::choice::one_of;
 use crate::cli::{Refused, values};
 
 #[derive(Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PictureArgs {
-    /// Columns and rows
+    /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::picture_size)]
     #[arg(default_value = "1200x900")]
     size: (u32, u32),
-    /// How it is found what each pixel shows
+    /// Visible-surface algorithm; all show the same faces
     #[arg(long, value_enum, default_value = "z-buffer")]
     engine: EngineName,
-    /// What is shown
-    #[arg(long, value_enum, default_value = "shaded", conflicts_with = "tone")]
-    show: ShowName,
-    /// Show how light each point is, as gray from 0 to 255; nothing is white
+    /// What to show
+    #[arg(long, value_name = "WHAT", value_parser = one_of::<Show>(), conflicts_with = "tone")]
+    #[arg(default_value = Show::Shaded.name())]
+    show: Show,
+    /// Show how light each point is, as gray from 0 to 255; the same as --show tone
     #[arg(long, conflicts_with_all = ["paint", "edges"])]
     tone: bool,
     /// Whether faces look flat or curved
@@ -30,20 +32,20 @@ pub(super) struct PictureArgs {
     /// With smooth shading, faces that meet at more than this angle keep their edge
     #[arg(long, value_name = "DEG", value_parser = values::crease, default_value_t = 40.0)]
     smooth_angle: f64,
-    /// Where the light comes from: a direction in the scene [default: the viewer's left shoulder]
+    /// Direction toward the light [default: over the viewer's left shoulder]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
     /// Color of the faces
     #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
     #[arg(default_value = "#d8d4c8")]
     paint: Rgb,
-    /// Color where no face is seen [default: white, but black for numbers]
+    /// Background color [default: white; black for depth, faces and normals]
     #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
     background: Option<Rgb>,
-    /// How much of the light behind it a face stops, from 0 to 1; for the a-buffer
+    /// Opacity of faces, from 0 to 1; for a-buffer
     #[arg(long, value_name = "PART", value_parser = values::part)]
     opacity: Option<f64>,
-    /// Lay the visible lines of `draw` over it
+    /// Draw the visible lines on top
     #[arg(long)]
     pub(super) edges: bool,
     /// Kinds of line for --edges, as for `draw`
@@ -53,7 +55,7 @@ pub(super) struct PictureArgs {
     /// Width of these lines in pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 1.5)]
     edge_width: f64,
-    /// Show exactly the field of view instead of the whole scene
+    /// Fit the field of view instead of the scene
     #[arg(long)]
     fit_fov: bool,
 }
@@ -63,37 +65,27 @@ type Rgb = [u8; 3];
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum EngineName {
-    /// Keeps a depth for each pixel
+    /// A depth for each pixel; any scene
     ZBuffer,
-    /// The same with one row of memory
+    /// A depth for each pixel of one row; little memory
     ScanLine,
-    /// Decides for spans between edges
+    /// Spans between edges; few, large faces
     Spanning,
-    /// Goes from edge to edge with the faces in order of depth
+    /// From edge to edge, faces in order of depth; writes each pixel once
     Watkins,
     /// 16 samples a pixel: smooth borders, and glass with --opacity
     ABuffer,
-    /// One ray for each pixel
+    /// One ray for each pixel; checks the others
     RayCast,
     /// Faces from far to near, cut where they cross
     Painter,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum ShowName {
-    /// Faces in the light
-    Shaded,
-    /// What is nearer is lighter
-    Depth,
-    /// A color for each face
-    Faces,
-    /// Red is right, green is up, blue is towards the viewer
-    Normals,
-}
-
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Shading {
+    /// One tone for each face
     Flat,
+    /// Curved surfaces
     Smooth,
 }
 
@@ -108,7 +100,7 @@ impl PictureArgs {
         if self.opacity.is_some() && self.engine != EngineName::ABuffer {
             return Err("--opacity needs --engine a-buffer".into());
         }
-        let shows_numbers = matches!(self.show, ShowName::Faces);
+        let shows_numbers = matches!(self.show, Show::Faces);
         if shows_numbers && self.engine == EngineName::ABuffer {
             return Err("colors of faces cannot be mixed; give another --engine".into());
         }
@@ -121,13 +113,7 @@ impl PictureArgs {
             EngineName::RayCast => Pixels::Centers(ImageEngine::RayCast),
             EngineName::Painter => Pixels::Centers(ImageEngine::Painter),
         };
-        let show = match self.show {
-            _ if self.tone => Show::Tone,
-            ShowName::Shaded => Show::Shaded,
-            ShowName::Depth => Show::Depth,
-            ShowName::Faces => Show::Faces,
-            ShowName::Normals => Show::Normals,
-        };
+        let show = if self.tone { Show::Tone } else { self.show };
         Ok(PreviewOptions {
             size: self.size,
             pixels,

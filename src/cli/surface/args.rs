@@ -4,13 +4,14 @@ use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::Titles;
 use hiddenline::stages::draw::surface::{Levels, SurfaceEngine, SurfaceLines};
 use hiddenline::stages::engines::surface::CellOrder;
-use hiddenline::stages::surface::DEFAULT_SAMPLES;
+use hiddenline::stages::surface::{Aspect, DEFAULT_SAMPLES};
 use hiddenline::stages::write::Format;
 
 use super::Job;
-use super::sheet_args::SheetArgs;
-use super::sheets::{Aspect, Input};
+use super::input::SurfaceSource;
+use super::input_args::SurfaceInputArgs;
 use crate::cli::camera::CameraArgs;
+use crate::cli::choice::one_of;
 use crate::cli::output::{OutputArgs, check_place};
 use crate::cli::page::PageArgs;
 use crate::cli::{Refused, values};
@@ -43,7 +44,7 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct SurfaceArgs {
     #[command(flatten)]
-    surface: InputArgs,
+    surface: ExprArgs,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -58,7 +59,7 @@ pub(in crate::cli) struct SurfaceArgs {
 
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
-struct InputArgs {
+struct ExprArgs {
     /// Formula of x, y, r and theta
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     #[arg(required_unless_present_any = ["grid", "points", "parametric"])]
@@ -67,7 +68,7 @@ struct InputArgs {
     #[arg(value_name = "EXPR")]
     more: Vec<String>,
     #[command(flatten)]
-    sheets: SheetArgs,
+    sheets: SurfaceInputArgs,
 }
 
 #[derive(Args)]
@@ -84,28 +85,25 @@ struct LineArgs {
     /// heights with commas between them (`5,` is the height 5)
     #[arg(long, value_name = "N|LIST", value_parser = levels, allow_hyphen_values = true)]
     levels: Option<Levels>,
-    /// Draw only each K-th line of a family, and the last one
+    /// Draw only every K-th line of a family, and the last one
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
     every: usize,
-    /// How far lines may be from the curves they stand for, on paper; 0 draws them as sampled
+    /// How far lines may deviate from the true curves, on paper; 0 draws the samples as they are
     ///
-    /// Formulas are sampled up to eight times as finely as --samples says, and only the lines of
-    /// --samples are drawn. Neither the floating horizon nor --lines mesh does so.
+    /// Formulas are sampled up to eight times as finely as --samples says, but only the lines of
+    /// --samples are drawn. Not used with --engine floating-horizon or --lines mesh.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0.1")]
     smoothness: f64,
-    /// Give lines on the underside of the surface a pen and a layer of their own, `underside`
+    /// Draw lines on the underside of the surface with their own pen and layer, `underside`
     #[arg(long)]
     underside: bool,
     /// Hidden-line algorithm
-    ///
-    /// auto: max-min where it applies, otherwise roberts or appel; max-min: one surface z = f(x, y)
-    /// without holes, or two that meet along their border, such as a sphere; roberts, appel: any
-    /// surface; floating-horizon: one family of lines, hidden by its own nearer lines.
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: EngineName,
-    /// In which order max-min visits the cells of a grid; the drawing is the same
-    #[arg(long, value_enum)]
-    order: Option<OrderName>,
+    #[arg(long, value_parser = one_of::<SurfaceEngine>())]
+    #[arg(default_value = SurfaceEngine::Auto.name())]
+    engine: SurfaceEngine,
+    /// Order in which max-min visits the cells of a grid; the drawing is the same
+    #[arg(long, value_parser = one_of::<CellOrder>())]
+    order: Option<CellOrder>,
     /// Draw what is exactly visible, one stroke for each visible piece of each grid edge, with heights
     /// as given
     #[arg(long)]
@@ -115,13 +113,13 @@ struct LineArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Axes")]
 struct DressingArgs {
-    /// Draw nothing but the surface; --exact implies it
+    /// Leave out axes and titles; implied by --exact
     #[arg(long, conflicts_with_all = ["title", "axis_titles"])]
     no_axes: bool,
-    /// What is written above the drawing
+    /// Title above the drawing
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     title: Option<String>,
-    /// What is written beside the axes
+    /// Titles of the axes
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_value = "x,y,z")]
     axis_titles: Vec<String>,
 }
@@ -146,35 +144,6 @@ enum LineName {
     Mesh,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum EngineName {
-    Auto,
-    MaxMin,
-    FloatingHorizon,
-    Roberts,
-    Appel,
-}
-
-impl EngineName {
-    fn library(self) -> SurfaceEngine {
-        match self {
-            Self::Auto => SurfaceEngine::Auto,
-            Self::MaxMin => SurfaceEngine::MaxMin,
-            Self::FloatingHorizon => SurfaceEngine::FloatingHorizon,
-            Self::Roberts => SurfaceEngine::Roberts,
-            Self::Appel => SurfaceEngine::Appel,
-        }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum OrderName {
-    /// Row by row, away from the eye
-    Rows,
-    /// Diagonal by diagonal, as Cantor counts pairs
-    Cantor,
-}
-
 fn levels(text: &str) -> Result<Levels, String> {
     if let Ok(count) = text.trim().parse() {
         return if count > 0 { Ok(Levels::Count(count)) } else { Err("at least 1 level".into()) };
@@ -195,7 +164,7 @@ impl SurfaceArgs {
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
         let mut sheets = sheets.ok_or("give a formula")?;
         let default_line = match sheets.input {
-            Input::Points(_) => LineName::Mesh,
+            SurfaceSource::Points(_) => LineName::Mesh,
             _ => LineName::Both,
         };
         let named = if lines.lines.is_empty() { vec![default_line] } else { lines.lines };
@@ -205,43 +174,42 @@ impl SurfaceArgs {
         let along_y = both || has(LineName::Y);
         let only_grid_lines =
             named.iter().all(|n| matches!(n, LineName::X | LineName::Y | LineName::Both));
-        if matches!(sheets.input, Input::Points(_)) && (along_x || along_y) {
+        if matches!(sheets.input, SurfaceSource::Points(_)) && (along_x || along_y) {
             return Err("scattered points have no grid lines: give --lines mesh or levels".into());
         }
         if lines.levels.is_some() && !has(LineName::Levels) {
             return Err("--levels is for level curves: give --lines levels, too".into());
         }
         let one_sheet = match &sheets.input {
-            Input::Formulas { formulas, .. } => formulas.len() == 1,
-            Input::File(_) | Input::Points(_) => true,
-            Input::Parametric { .. } => false,
+            SurfaceSource::Formulas { formulas, .. } => formulas.len() == 1,
+            SurfaceSource::File(_) | SurfaceSource::Points(_) => true,
+            SurfaceSource::Parametric { .. } => false,
         };
-        let two_sheets =
-            matches!(&sheets.input, Input::Formulas { formulas, .. } if formulas.len() == 2);
+        let two_sheets = matches!(&sheets.input, SurfaceSource::Formulas { formulas, .. } if formulas.len() == 2);
         let is_grid = match &sheets.input {
-            Input::Formulas { domain, .. } => one_sheet && domain.is_none(),
-            Input::File(_) => true,
-            Input::Points(_) | Input::Parametric { .. } => false,
+            SurfaceSource::Formulas { domain, .. } => one_sheet && domain.is_none(),
+            SurfaceSource::File(_) => true,
+            SurfaceSource::Points(_) | SurfaceSource::Parametric { .. } => false,
         };
         match lines.engine {
-            EngineName::FloatingHorizon if along_x == along_y || !only_grid_lines => {
+            SurfaceEngine::FloatingHorizon if along_x == along_y || !only_grid_lines => {
                 return Err(
                     "the floating horizon draws one family: give --lines x or --lines y".into()
                 );
             }
-            EngineName::FloatingHorizon if !is_grid => {
+            SurfaceEngine::FloatingHorizon if !is_grid => {
                 return Err(
                     "the floating horizon draws one surface z = f(x, y) over a rectangle: \
                             give --engine roberts or auto"
                         .into(),
                 );
             }
-            EngineName::MaxMin if !one_sheet && !two_sheets => {
+            SurfaceEngine::MaxMin if !one_sheet && !two_sheets => {
                 return Err("max-min draws one surface z = f(x, y), or two that meet along their \
                             border: give --engine roberts or auto"
                     .into());
             }
-            EngineName::FloatingHorizon | EngineName::Roberts | EngineName::Appel
+            SurfaceEngine::FloatingHorizon | SurfaceEngine::Roberts | SurfaceEngine::Appel
                 if lines.order.is_some() =>
             {
                 return Err("--order is for --engine max-min or auto".into());
@@ -269,11 +237,8 @@ impl SurfaceArgs {
             smoothness_mm: if lines.exact { 0.0 } else { lines.smoothness },
             underside: lines.underside,
             exact: lines.exact,
-            engine: lines.engine.library(),
-            order: lines.order.map(|order| match order {
-                OrderName::Rows => CellOrder::Rows,
-                OrderName::Cantor => CellOrder::Diagonals,
-            }),
+            engine: lines.engine,
+            order: lines.order,
             axes: titles,
             apart_by_kind: output.format == Format::Json,
             ..SurfaceLines::default()
@@ -282,7 +247,7 @@ impl SurfaceArgs {
             sheets,
             view,
             lines,
-            page: output.target.within_reach(page.options()),
+            page: output.within_reach(page.options()),
             unit_mm: page.unit_mm(),
             dxf_scale: page.dxf_scale(),
             pen_width_mm: page.pen_width_mm(),

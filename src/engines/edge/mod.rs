@@ -53,6 +53,21 @@ pub enum LineEngine {
     AllPairs,
 }
 
+impl LineEngine {
+    /// Those to choose from; all pairs are for tests.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::Roberts, Self::Appel];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Roberts => "roberts",
+            Self::Appel => "appel",
+            Self::AllPairs => "all-pairs",
+        }
+    }
+}
+
 /// Finds the spans of all drawn edges of `view`, in their order.
 ///
 /// Also returns which engine did it, by its name on the command line, and how much work it was.

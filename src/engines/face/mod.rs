@@ -2,17 +2,17 @@
 //!
 //! ```text
 //!  scene, camera ─► depth_sort, bsp, octree ──► pieces from far to near ──┐
-//!                   warnock, weiler_atherton ─► pieces beside each other ─┴─► Painting
+//!                   warnock, weiler_atherton ─► pieces side by side     ─┴─► Painting
 //! ```
 //!
-//! | engine | cuts faces at | serves | wants |
+//! | engine | cuts faces at | serves | suits |
 //! |---|---|---|---|
-//! | [`depth_sort`] | planes of others, where there is no order without | one view | few piercings |
+//! | [`depth_sort`] | planes of others, where no order exists otherwise | one view | few piercings |
 //! | [`bsp`] | planes of others | all views | few piercings |
 //! | [`octree`] | octants, then as bsp | all views | large faces that hide much |
 //!
-//! These three order [`fragment`]s exactly, however often they are cut; [`piercing`] tells beforehand
-//! when that would be too often.
+//! These three order [`fragment`]s exactly, however often they are cut; [`piercing`] estimates beforehand
+//! whether that would be too often.
 
 pub mod bsp;
 pub mod depth_sort;
@@ -52,10 +52,10 @@ use crate::model::scene::Scene;
 /// The face engines by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceEngine {
-    /// One that suits the scene.
+    /// Chosen to suit the scene.
     #[default]
     Auto,
-    /// Faces sorted by distance, with tests in rising cost and splits where the order has a cycle.
+    /// Faces sorted by distance, by tests of rising cost, with splits where the order has a cycle.
     DepthSort,
     /// A tree of planes, built once for all views.
     Bsp,
@@ -63,11 +63,15 @@ pub enum FaceEngine {
     Octree,
     /// Windows of the image, quartered until each is simple.
     Warnock,
-    /// Faces clipped by nearer faces: exact regions beside each other.
+    /// Faces clipped by nearer faces: exact regions side by side.
     WeilerAtherton,
 }
 
 impl FaceEngine {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 6] =
+        [Self::Auto, Self::DepthSort, Self::Bsp, Self::Octree, Self::Warnock, Self::WeilerAtherton];
+
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -139,25 +143,25 @@ impl FaceError {
     }
 }
 
-/// What engines can be told.
+/// Options of single engines.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FaceOptions {
-    /// Width of a leaf in image units, for [`FaceEngine::Warnock`]; `None` for one that suits the image.
+    /// Width of a leaf in image units, for [`FaceEngine::Warnock`]; `None` to suit the image.
     pub leaf: Option<f64>,
     /// How [`FaceEngine::Warnock`] divides windows.
     pub subdivision: warnock::Subdivision,
 }
 
-/// Up to so many triangles [`FaceEngine::Auto`] takes [`FaceEngine::WeilerAtherton`], whose regions are exact
-/// and whose files are the smallest; beyond, [`FaceEngine::Bsp`] is faster.
+/// Up to this many triangles, [`FaceEngine::Auto`] means [`FaceEngine::WeilerAtherton`], with exact regions
+/// and the smallest files; beyond, [`FaceEngine::Bsp`] is faster.
 pub const MOST_EXACT: usize = 6_000;
 
-/// A scene made ready for an engine, once for any number of views.
+/// A scene prepared for an engine, once for any number of views.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     scene: &'a Scene,
     engine: FaceEngine,
-    /// Whether another engine may stand in where this one would take too long.
+    /// Whether another engine may replace this one where it would take too long.
     is_free: bool,
     trees: Trees,
 }
@@ -173,8 +177,8 @@ enum Trees {
 impl<'a> Prepared<'a> {
     /// Chooses the engine and does what does not depend on the view.
     ///
-    /// [`FaceEngine::Auto`] takes [`FaceEngine::Warnock`] for faces that pierce each other in heaps, which the
-    /// others would cut into millions of fragments; of the rest see [`MOST_EXACT`].
+    /// [`FaceEngine::Auto`] means [`FaceEngine::Warnock`] for masses of faces that pierce each other, which
+    /// the others would cut into millions of fragments; otherwise see [`MOST_EXACT`].
     ///
     /// # Errors
     /// [`FaceError::TooManyFragments`].
@@ -194,8 +198,8 @@ impl<'a> Prepared<'a> {
         Ok(Self { scene, engine, is_free, trees })
     }
 
-    /// The engine that was chosen; where it would take too long for a view, [`FaceWork::engine`] tells
-    /// which one stood in.
+    /// The engine chosen; where it would take too long for a view, [`FaceWork::engine`] says which one
+    /// replaced it.
     pub fn engine(&self) -> FaceEngine {
         self.engine
     }
@@ -205,11 +209,12 @@ impl<'a> Prepared<'a> {
         self.scene
     }
 
-    /// The visible regions as a camera sees them, and what it took to find them; building a tree
-    /// counts in each view of it.
+    /// The visible regions as a camera sees them, and the work it took to find them; the work of building
+    /// a tree is counted in each view.
     ///
     /// # Errors
-    /// See [`FaceError`]; all but those of [`depth_sort`] that say so are told before the work begins.
+    /// See [`FaceError`]; all are found before the work begins, except those of [`depth_sort`] that say
+    /// otherwise.
     pub fn solve(
         &self,
         camera: &Camera,

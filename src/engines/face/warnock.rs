@@ -2,8 +2,8 @@
 //!
 //! Read in "Algoritmy viditeľnosti" (section Warnockov algoritmus delenia okna, and AREA-SUBDIVISION
 //! METHOD after Hearn and Baker) and in "Bereichsunterteilungs-Algorithmen" (Warnock-Algorithmus).
-//! A window whose content is simple is drawn at once; any other is divided, down to a leaf as wide
-//! as a pen, where the nearest face at the center decides.
+//! A window with simple content is drawn at once; any other is divided, down to a leaf as wide as a pen,
+//! which takes the face nearest at its center.
 //!
 //! ```text
 //!  surrounding   intersecting   contained     disjoint
@@ -14,29 +14,29 @@
 //!  ▒▒▒▒▒▒▒▒▒▒
 //! ```
 //!
-//! * **K1**: a surrounding polygon is in front of all others: the window is of its color.
-//! * **K2**: one polygon, or none, reaches into the window: what it covers of it is of its color.
+//! * **K1**: a surrounding polygon is in front of all others: it fills the window.
+//! * **K2**: at most one polygon reaches into the window: it fills the part that it covers.
 //!
-//! That a surrounding polygon is in front is tested in both ways of the source: by sorting, its
-//! farthest point in the window being nearer than the nearest of all others; and by the depths of all
-//! planes at the four corners of the window. Before, the planes decide exactly for polygons that do
-//! not cross, see [`Images::place`]. What is behind a surrounding polygon is not handed down to the
+//! Whether a surrounding polygon is in front is tested in both ways of the source: by sorting (its
+//! farthest point in the window is nearer than the nearest point of every other), and by the depths of
+//! all planes at the four corners of the window. Before that, the planes decide exactly for polygons that
+//! do not cross, see [`Images::place`]. Polygons behind a surrounding polygon are not passed on to the
 //! parts of the window.
 //!
-//! Windows are divided regularly, into quarters, or at the vertex of a polygon that is nearest
-//! to the middle ([`Subdivision`]); a window that is one row or column of leaves is divided in one
-//! direction only. Borders of windows are borders of leaves always, so both ways come down to the
-//! same leaves. In the end all that was drawn of a face is joined to polygons.
+//! Windows are divided into quarters, or at the polygon vertex nearest to the middle ([`Subdivision`]); a
+//! window that is a single row or column of leaves is divided in one direction only. Window borders are
+//! always leaf borders, so both ways end at the same leaves. Finally, all parts of a face are joined into
+//! polygons.
 //!
-//! Differs from the sources in that windows with one polygon are cut exactly, not in pixels; so
-//! only where several faces meet is the border a staircase of leaves.
+//! Differs from the sources in that windows with one polygon are clipped exactly, not in pixels; so the
+//! border is a staircase of leaves only where several faces meet.
 //!
-//! Good for: looking at how complicated a picture is; scenes with few, large faces. Exactness: within
-//! a leaf of where two faces meet. Cost: leaves along all borders between faces × log; candidates
-//! become fewer from window to window. Cannot: more than [`MOST_LEAVES`] leaves, refused at once.
+//! Good for: showing how complex a picture is; scenes with few, large faces. Exactness: within a leaf of
+//! where two faces meet. Cost: leaves along all borders between faces × log; each window has fewer
+//! candidates than the one it is part of. Cannot: more than [`MOST_LEAVES`] leaves, refused at once.
 //!
-//! Coherence: face coherence, in the area of a window (a window of one face needs no further look), and
-//! object coherence (what a surrounding face hides is not handed down to the parts of a window).
+//! Coherence: face coherence, in the area of a window (a window of one face is done), and object
+//! coherence (what a surrounding face hides is not passed on to the parts of a window).
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -68,6 +68,19 @@ pub enum Subdivision {
     Vertices,
 }
 
+impl Subdivision {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Regular, Self::Vertices];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Regular => "regular",
+            Self::Vertices => "vertices",
+        }
+    }
+}
+
 /// The window that is divided, in leaves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WarnockOptions {
@@ -83,7 +96,7 @@ pub struct WarnockOptions {
 /// How windows came to their end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct WarnockCounts {
-    /// Windows that were looked at: the sum of all below.
+    /// Windows examined: the sum of all below.
     pub windows: u64,
     /// Windows that were divided.
     pub divided: u64,
@@ -91,13 +104,13 @@ pub struct WarnockCounts {
     pub empty: u64,
     /// Windows that one polygon covers, in front of all others if there are any.
     pub covered: u64,
-    /// Windows that one polygon reaches into, or one and what it hides.
+    /// Windows that only one polygon reaches into, apart from those it hides.
     pub single: u64,
     /// Leaves where the nearest polygon at the center was taken.
     pub leaves: u64,
 }
 
-/// The same while several threads count.
+/// The same, for several threads that count at once.
 #[derive(Debug, Default)]
 struct Tally {
     divided: AtomicU64,
@@ -121,10 +134,10 @@ fn count(tally: &AtomicU64) {
     tally.fetch_add(1, Ordering::Relaxed);
 }
 
-/// Finds what is seen of each face.
+/// Finds the visible part of each face.
 ///
-/// The pieces lie beside each other, in the order of faces. In parallel, and the same with any number
-/// of threads.
+/// The pieces are disjoint, in the order of faces. In parallel; the result is the same for any number of
+/// threads.
 ///
 /// # Errors
 /// [`FaceError::TooManyLeaves`].
@@ -158,7 +171,7 @@ pub fn solve(
     Ok((merge::by_face(faces, &images.grid), warnock.tally.counts()))
 }
 
-/// So many times are the parts of a window divided by several threads.
+/// Down to this many divisions, the parts of a window are divided in parallel.
 const PARALLEL_LEVELS: u32 = 4;
 
 /// A rectangle of leaves.
@@ -168,7 +181,7 @@ struct Window {
     to: [u32; 2],
 }
 
-/// How a polygon lies to a window.
+/// How a polygon and a window overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Class {
     Surrounding,
@@ -230,12 +243,12 @@ impl Warnock<'_> {
         parts.into_iter().flat_map(|part| self.window(part, &polygons, 0)).collect()
     }
 
-    /// Leaves out what is behind a polygon that surrounds the window. If that is all, this is K1.
+    /// Removes what is behind a polygon that surrounds the window. If nothing else is left, this is K1.
     fn drop_hidden(&self, reaching: &mut Vec<(u32, Class)>, bounds: (DVec2, DVec2)) {
         let middle = (bounds.0 + bounds.1) / 2.0;
         let at_middle = |polygon: u32| self.nearness(polygon, middle);
         let surrounding = reaching.iter().filter(|(_, class)| *class == Class::Surrounding);
-        // Of those only the nearest in the middle can be in front of all.
+        // Only the one nearest in the middle can be in front of all.
         let front = surrounding.map(|&(polygon, _)| polygon).reduce(|a, b| {
             if Depth::of_any(at_middle(b)) > Depth::of_any(at_middle(a)) { b } else { a }
         });
@@ -243,7 +256,7 @@ impl Warnock<'_> {
         reaching.retain(|&(polygon, _)| polygon == front || !self.hides(front, polygon, bounds));
     }
 
-    /// Whether a polygon that surrounds a window is in front of another all over it.
+    /// Whether a polygon that surrounds a window is in front of another everywhere in it.
     fn hides(&self, front: u32, other: u32, bounds: (DVec2, DVec2)) -> bool {
         match self.images.place(front as usize, other as usize) {
             DepthOrder::Behind => true,
@@ -309,7 +322,7 @@ impl Warnock<'_> {
         }
     }
 
-    /// The parts of a window: four, or two of a row or column.
+    /// The parts of a window: four, or two for a row or column of leaves.
     fn divided(&self, window: Window, polygons: &[u32]) -> Vec<Window> {
         let at = match self.subdivision {
             Subdivision::Regular => None,
@@ -328,7 +341,7 @@ impl Warnock<'_> {
             .collect()
     }
 
-    /// The border of leaves next to that vertex in a window which is nearest to its middle.
+    /// The leaf border next to the vertex nearest to the middle of a window.
     fn vertex(&self, window: Window, polygons: &[u32]) -> Option<[u32; 2]> {
         let (low, high) = self.bounds(window);
         let middle = (low + high) / 2.0;
@@ -339,7 +352,7 @@ impl Warnock<'_> {
         let vertex = inside
             .min_by(|a, b| a.distance_squared(middle).total_cmp(&b.distance_squared(middle)))?;
         let at = ((vertex - self.low) / self.leaf).round();
-        // A window one leaf wide is not divided that way, whatever this says.
+        // A window one leaf wide is not divided in that direction, whatever this says.
         let within = |axis: usize| {
             let (least, most) = (window.from[axis] + 1, (window.to[axis] - 1).max(1));
             (at[axis] as u32).clamp(least.min(most), most)

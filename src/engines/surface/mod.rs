@@ -1,4 +1,4 @@
-//! Engines for function surfaces z = f(x, y), each with its own definition of what hides.
+//! Engines for function surfaces z = f(x, y). They differ in what hides.
 //!
 //! | engine | draws | hides by | cost |
 //! |---|---|---|---|
@@ -22,7 +22,7 @@ pub use pieces::{GridPieces, SurfaceSide, VisiblePiece};
 
 use thiserror::Error;
 
-/// In which order cells are visited; both give the same drawing.
+/// The order in which cells are visited; both give the same drawing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum CellOrder {
     /// Row after row, away from the eye.
@@ -32,13 +32,26 @@ pub enum CellOrder {
     Diagonals,
 }
 
+impl CellOrder {
+    /// Both orders.
+    pub const ALL: [Self; 2] = [Self::Rows, Self::Diagonals];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rows => "rows",
+            Self::Diagonals => "cantor",
+        }
+    }
+}
+
 /// Why a surface cannot be drawn by the engines of this folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum HorizonError {
-    /// The eye lies on the surface.
-    #[error("the eye lies on the surface; move it up or down")]
+    /// The eye is on the surface.
+    #[error("the eye is on the surface; move it up or down")]
     EyeOnSurface,
-    /// Some samples have no height: one may look through the hole.
+    /// Some samples have no height: the eye may look through the hole.
     #[error("the surface has holes; use a mesh engine")]
     Holes,
 }

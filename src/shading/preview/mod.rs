@@ -5,7 +5,7 @@
 //!                    (a strip of rows)         color    strokes    strip after strip
 //! ```
 //!
-//! Only the strips at work are in memory, so that it does not depend on the height of the picture.
+//! Only the current strips are in memory, so memory does not depend on the height of the picture.
 
 mod overlay;
 mod shade;
@@ -21,7 +21,7 @@ use self::overlay::Overlay;
 use self::shade::Shader;
 use crate::camera::{Camera, Projection};
 use crate::engines::image::edge::center;
-use crate::engines::image::raster::{Corners, STRIP_ROWS};
+use crate::engines::image::raster::STRIP_ROWS;
 use crate::engines::image::{
     ImageEngine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip,
 };
@@ -36,16 +36,16 @@ pub const DEFAULT_SIZE: (u32, u32) = (1200, 900);
 /// More columns or rows than this are refused.
 pub const LARGEST_SIDE: u32 = 1 << 16;
 
-/// Empty border around the picture, as a part of its shorter side.
+/// Empty border around the picture, as a fraction of its shorter side.
 const MARGIN: f64 = 0.04;
 
-/// What is found for each pixel.
+/// How the triangles in each pixel are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pixels {
     /// What its center shows.
     Centers(ImageEngine),
-    /// The shares of all that shows in it, for anti-aliased and transparent pictures; `opacity` is
-    /// from 0 to 1.
+    /// The share of each triangle in it, for anti-aliased and transparent pictures; `opacity` is from 0 to
+    /// 1.
     Shares {
         /// How much of the light behind it a triangle stops.
         opacity: f64,
@@ -58,18 +58,34 @@ pub enum Show {
     /// Their color in the light.
     #[default]
     Shaded,
-    /// How light they are, as gray: 0 black, 255 white; without color. Nothing is white.
+    /// How light they are, as gray: 0 black, 255 white; without color. The background is white.
     Tone,
     /// How near they are: the nearest point of the scene white, the farthest dark.
     Depth,
-    /// Which face they are part of: each face has a color of its own.
+    /// Which face they are part of: each face has its own color.
     Faces,
-    /// Their normal, turned to the viewer: red is right, green is up, blue is towards the viewer.
+    /// Their normal, turned to the viewer: red is right, green is up, blue is toward the viewer.
     Normals,
 }
 
 impl Show {
-    /// What is where no face is seen, unless set otherwise.
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Self; 5] = [Self::Shaded, Self::Tone, Self::Depth, Self::Faces, Self::Normals];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shaded => "shaded",
+            Self::Tone => "tone",
+            Self::Depth => "depth",
+            Self::Faces => "faces",
+            Self::Normals => "normals",
+        }
+    }
+}
+
+impl Show {
+    /// The color where no face is seen, unless set otherwise.
     fn background(self) -> [u8; 3] {
         match self {
             Self::Shaded | Self::Tone => [255; 3],
@@ -94,7 +110,7 @@ pub struct PreviewOptions {
     pub light: Option<DVec3>,
     /// Color of the faces.
     pub color: [u8; 3],
-    /// Where no face is seen; `None` for what suits.
+    /// Color where no face is seen; `None` to suit what is shown.
     pub background: Option<[u8; 3]>,
     /// Show exactly the vertical field of view instead of the whole scene; for perspective only.
     pub fit_fov: bool,
@@ -118,7 +134,7 @@ impl Default for PreviewOptions {
     }
 }
 
-/// Why there is no picture.
+/// Why a picture cannot be made.
 #[derive(Debug, Error)]
 pub enum PreviewError {
     /// No pixels, or too many.
@@ -127,7 +143,7 @@ pub enum PreviewError {
     /// [`PreviewOptions::fit_fov`] with an orthographic camera.
     #[error("an orthographic view has no field of view to fit")]
     NoFieldOfView,
-    /// The painter was asked for.
+    /// The painter cannot order the faces.
     #[error(transparent)]
     NoOrder(#[from] painter::NoOrder),
     /// The stream failed.
@@ -136,12 +152,11 @@ pub enum PreviewError {
 }
 
 impl PreviewOptions {
-    /// Where points of the image are in the picture.
+    /// Where points of the image are in the picture. It is fitted by the scene's extent, as drawings are.
     pub fn pixel_map(&self, scene: &Scene, camera: &Camera) -> PixelMap {
         let of_view = if self.fit_fov { PixelMap::field_of_view(camera, self.size) } else { None };
         of_view.unwrap_or_else(|| {
-            let bounds = Corners::new(scene, camera).bounds();
-            let bounds = bounds.unwrap_or((DVec2::NEG_ONE, DVec2::ONE));
+            let bounds = scene.extent(camera).corners().unwrap_or((DVec2::NEG_ONE, DVec2::ONE));
             let margin = f64::from(self.size.0.min(self.size.1)) * MARGIN;
             PixelMap::fitting(bounds, self.size, margin)
         })
@@ -170,7 +185,7 @@ pub fn write(
         return Err(PreviewError::NoFieldOfView);
     }
     let map = options.pixel_map(scene, camera);
-    // Pixels of the raster along each side of one of the picture.
+    // Pixels of the raster along each side of a pixel of the picture.
     let samples = match options.pixels {
         Pixels::Centers(_) => 1,
         Pixels::Shares { .. } => a_buffer::SIDE,

@@ -1,7 +1,7 @@
 //! The color of a triangle at a pixel.
 //!
-//! The tone is that of [`crate::shading::light`], by a normal that is flat, the triangle's own, or smooth: the
-//! mean of those around each corner, mixed over the triangle (Phong 1975).
+//! The tone is that of [`crate::shading::light`]. The normal is flat, that of the triangle, or smooth: the
+//! mean of the normals around each corner, interpolated over the triangle (Phong 1975).
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -71,7 +71,7 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// What is where no face is seen.
+    /// The color where no face is seen.
     pub(super) fn background(&self) -> DVec3 {
         self.background
     }
@@ -81,7 +81,7 @@ impl<'a> Shader<'a> {
         self.normals.is_empty() && self.show != Show::Depth
     }
 
-    /// The color of an item at a point of the picture, parts from 0 to 1.
+    /// The color of an item at a point of the picture, components from 0 to 1.
     pub(super) fn color(&self, item: u32, pixel: DVec2) -> DVec3 {
         if item == NOTHING {
             return self.background;
@@ -111,7 +111,7 @@ impl<'a> Shader<'a> {
         self.light.tone(self.normal(triangle, pixel))
     }
 
-    /// The normal that is shaded, of length one, on the side of the viewer.
+    /// The unit normal used for shading, on the side of the viewer.
     fn normal(&self, triangle: u32, pixel: DVec2) -> DVec3 {
         let corners = positions(self.scene, triangle);
         let flat = area_vector(corners);
@@ -154,13 +154,13 @@ fn positions(scene: &Scene, triangle: u32) -> [DVec3; 3] {
     scene.triangles()[triangle as usize].map(|vertex| scene.mesh().positions()[vertex as usize])
 }
 
-/// Normal of a triangle, twice as long as its area is large.
+/// The normal of a triangle; its length is twice the area.
 fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// At vertices with more triangles than this the mean is that of all: the tip of a fan so fine is no
-/// corner of anything, and comparing each with each would take too long.
+/// At vertices with more triangles than this, the mean is that of all: the tip of such a fine fan is not a
+/// corner, and comparing each pair would take too long.
 const MOST_COMPARED: usize = 256;
 
 /// For each corner of each triangle the mean normal, by area, of the triangles at that vertex that

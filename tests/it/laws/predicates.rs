@@ -8,7 +8,7 @@ use crate::scenes::Rng;
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
 use hiddenline::stages::predicates::{
-    Corner, CutPlane, Estimate, PiercePoint, Place, PlaneName, Planes, Sight, Sign, Solid,
+    Corner, CornerPlace, CutPlane, Estimate, PiercePoint, PlaneName, Planes, Sight, Sign, Solid,
 };
 
 /// A number from −1 to 1 with all its bits in use.
@@ -103,7 +103,7 @@ fn a_cut_edge_ends_on_the_side_that_integers_say() {
             continue;
         }
         let at: [Estimate; 2] = at.map(|(estimate, _)| estimate);
-        let place = Place::OnEdge([0, 1], name);
+        let place = CornerPlace::OnEdge([0, 1], name);
         let cut: Corner = planes.corner_between([&ends[0], &ends[1]], at, place);
         // As far off as the cut is uncertain.
         let off = if i % 2 == 0 { 1e-14 * number(&mut rng) } else { 0.0 };
@@ -267,7 +267,7 @@ fn a_cut_edge_ends_in_the_plane_that_cuts_it() {
             continue;
         }
         let at = at.map(|(estimate, _)| estimate);
-        let place = Place::OnEdge([0, 1], name);
+        let place = CornerPlace::OnEdge([0, 1], name);
         let cut = planes.corner_between([&ends[0], &ends[1]], at, place);
         let of_plane = [2, 3, 4].map(|v| planes.vertex(v));
         let mut four = [&of_plane[0], &of_plane[1], &of_plane[2], &cut];

@@ -262,7 +262,7 @@ fn margins_wider_than_the_page_are_an_error() {
 fn an_unknown_kind_of_line_is_bad_usage() {
     let (_keep, folder) = with_cube();
     let output = hiddenline(&folder, &["draw", "cube.obj", "--lines", "crease,ridge"]);
-    assert_fails(&output, 2, "`ridge` is no kind of line");
+    assert_fails(&output, 2, "unknown line kind `ridge`");
 }
 
 #[test]

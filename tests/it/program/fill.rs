@@ -83,7 +83,7 @@ fn what_cannot_be_filled_is_refused_and_leaves_files_alone() {
     for (arguments, code, message) in [
         (vec![SPOT, "--format", "hpgl", "-o", name], 2, "no filled areas"),
         (vec![SPOT, "--palette", "0", "-o", name], 2, "from 1 to 64 inks"),
-        (vec![SPOT, "--palette", "nocolor", "-o", name], 2, "is no color"),
+        (vec![SPOT, "--palette", "nocolor", "-o", name], 2, "is not a color"),
         (vec![SPOT, "--palette", "3", "--debug", "order", "-o", name], 2, "cannot be used"),
         (vec![SPOT, "--engine", "warnock", "--leaf", "0.001", "-o", name], 1, "too many"),
         (vec!["missing.obj", "-o", name], 1, "missing.obj"),

@@ -189,7 +189,12 @@ fn files_of_another_kind_are_told() {
     fs::write(folder.join("bytes"), b"\x80\x00\xff").unwrap();
     for name in ["bytes", "cube.obj"] {
         let camera = ["draw", "cube.obj", "--camera", name];
-        fails(&folder, &camera, 1, &format!("--camera {name}: this is not a strokes file"));
+        fails(
+            &folder,
+            &camera,
+            1,
+            &format!("--camera {name}: this is not a file of strokes as JSON"),
+        );
     }
 }
 

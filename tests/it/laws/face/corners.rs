@@ -6,7 +6,7 @@ use crate::scenes::{Model, Rng, orthographic, random};
 use hiddenline::stages::engines::face::fragment::Fragment;
 use hiddenline::stages::engines::face::{bsp, octree};
 use hiddenline::stages::model::scene::Scene;
-use hiddenline::stages::predicates::{Place, PlaneName, Planes, Sign};
+use hiddenline::stages::predicates::{CornerPlace, PlaneName, Planes, Sign};
 
 /// Numbers count in this power of two: finer than any that comes up.
 const UNIT: i32 = -400;
@@ -39,16 +39,16 @@ impl World<'_> {
         }
     }
 
-    fn place(&self, place: &Place) -> Point {
+    fn place(&self, place: &CornerPlace) -> Point {
         let found = match *place {
-            Place::Vertex(vertex) => self.vertex(vertex),
-            Place::OnEdge(ends, plane) => {
+            CornerPlace::Vertex(vertex) => self.vertex(vertex),
+            CornerPlace::OnEdge(ends, plane) => {
                 let plane = self.plane(plane);
                 let [p, q] = ends.map(|v| self.vertex(v));
                 let (of_p, of_q) = (value(&plane, &p), value(&plane, &q));
                 [0, 1, 2, 3].map(|i| &q[i] * &of_p - &p[i] * &of_q)
             }
-            Place::InFace(planes) => {
+            CornerPlace::InFace(planes) => {
                 // Points and planes change places.
                 let [a, b, c] = planes.map(|plane| self.plane(plane));
                 plane_through(&a, &b, &c)
@@ -70,9 +70,9 @@ fn check(scene: &Scene, fragments: &[Fragment], n_checked: &mut [u32; 3]) {
         for corner in fragment.corners() {
             let truth = world.place(&corner.place);
             let kind = match corner.place {
-                Place::Vertex(_) => 0,
-                Place::OnEdge(..) => 1,
-                Place::InFace(_) => 2,
+                CornerPlace::Vertex(_) => 0,
+                CornerPlace::OnEdge(..) => 1,
+                CornerPlace::InFace(_) => 2,
             };
             n_checked[kind] += 1;
             let error = scaled(corner.error, UNIT) * &truth[3];

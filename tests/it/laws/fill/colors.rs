@@ -11,7 +11,7 @@ use hiddenline::stages::extent::Extent;
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::page::{Dash, Page, PageOptions, Placement, PlotOptions};
 use hiddenline::stages::plot::{Fills, Plot};
-use hiddenline::stages::shading::fill::{FillError, FillOptions, Filled, Palette, Show, fill};
+use hiddenline::stages::shading::fill::{Coloring, FillError, FillOptions, Filled, Palette, fill};
 use hiddenline::stages::strokes::Strokes;
 use hiddenline::stages::write::png::Resolution;
 use hiddenline::stages::write::{dxf, gcode, pdf, png};
@@ -193,11 +193,11 @@ fn grays_are_counted_and_a_palette_does_not_go_with_debugging() {
     let with = |palette, show| {
         fill(&scene, &camera, &FillOptions { palette: Some(palette), show, ..Default::default() })
     };
-    assert_eq!(with(Palette::Grays(2), Show::Shaded).unwrap().layers.len(), 2);
+    assert_eq!(with(Palette::Grays(2), Coloring::Shaded).unwrap().layers.len(), 2);
     for n in [0, 1000] {
-        assert_eq!(with(Palette::Grays(n), Show::Shaded), Err(FillError::Inks(n)));
+        assert_eq!(with(Palette::Grays(n), Coloring::Shaded), Err(FillError::Inks(n)));
     }
-    assert_eq!(with(Palette::Grays(3), Show::Order), Err(FillError::DebugInks));
+    assert_eq!(with(Palette::Grays(3), Coloring::Order), Err(FillError::DebugInks));
 }
 
 #[test]

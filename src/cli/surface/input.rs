@@ -4,12 +4,11 @@ use std::error::Error;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use hiddenline::stages::draw::surface::{SurfaceError, SurfaceNote};
 use hiddenline::stages::model::mesh::Mesh;
 use hiddenline::stages::surface::formula::Formula;
 use hiddenline::stages::surface::{
-    self, DEFAULT_RANGE, Duplicates, HeightField, HeightNote, HeightOptions, LatticeLines,
+    Aspect, DEFAULT_RANGE, Duplicates, HeightField, HeightNote, HeightOptions, LatticeLines,
     PointsError, SamplingError, ScatteredPoints, Surface, read_heights,
 };
 
@@ -23,7 +22,7 @@ pub(super) fn with_samples(error: &SurfaceError) -> String {
 }
 
 /// Where the surface comes from.
-pub(in crate::cli) enum Input {
+pub(in crate::cli) enum SurfaceSource {
     Formulas {
         texts: Vec<String>,
         formulas: Vec<Formula>,
@@ -41,25 +40,9 @@ pub(in crate::cli) enum Input {
     },
 }
 
-/// Whether heights are drawn to the scale of x and y.
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub(in crate::cli) enum Aspect {
-    Box,
-    Data,
-}
-
-impl Aspect {
-    fn library(self) -> surface::Aspect {
-        match self {
-            Self::Box => surface::Aspect::Box,
-            Self::Data => surface::Aspect::Data,
-        }
-    }
-}
-
 /// A surface as it is asked for.
-pub(in crate::cli) struct Sheets {
-    pub(super) input: Input,
+pub(in crate::cli) struct SurfaceInput {
+    pub(super) input: SurfaceSource,
     pub(super) options: HeightOptions,
     pub(super) duplicates: Duplicates,
     pub(super) z_scale: f64,
@@ -112,12 +95,12 @@ fn with_lines(path: &Path, error: &PointsError, lines: &[usize]) -> String {
     }
 }
 
-impl Sheets {
+impl SurfaceInput {
     /// Reads the surface. Warnings are added to `warnings`.
     pub(super) fn read(&self, warnings: &mut Vec<String>) -> Result<Surface, Box<dyn Error>> {
         let failed = |path: &Path, error: &dyn Error| format!("{}: {error}", path.display());
         let surface = match &self.input {
-            Input::Formulas { formulas, domain, samples, .. } => {
+            SurfaceSource::Formulas { formulas, domain, samples, .. } => {
                 let x = self.options.x.unwrap_or(DEFAULT_RANGE);
                 let y = self.options.y.unwrap_or(DEFAULT_RANGE);
                 let surface = Surface::formulas(formulas.clone()).x(x.0, x.1).y(y.0, y.1);
@@ -127,14 +110,14 @@ impl Sheets {
                     None => surface,
                 }
             }
-            Input::File(path) => {
+            SurfaceSource::File(path) => {
                 let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
                 let field = read_heights(&bytes, &self.options);
                 let HeightField { grid, notes } = field.map_err(|error| failed(path, &error))?;
                 warnings.extend(notes.iter().map(|note| noted(path, note)));
                 Surface::grid(grid)
             }
-            Input::Points(path) => {
+            SurfaceSource::Points(path) => {
                 let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
                 let text = String::from_utf8_lossy(&bytes);
                 let read = ScatteredPoints::read(&text, self.options.nodata);
@@ -144,12 +127,12 @@ impl Sheets {
                 warnings.extend(omitted(path, &read, n_merged));
                 Surface::points(read.points).map_err(|error| failed(path, &error))?
             }
-            Input::Parametric { formulas, u, v, samples } => {
+            SurfaceSource::Parametric { formulas, u, v, samples } => {
                 let surface = Surface::parametric_formulas((**formulas).clone(), *u, *v);
                 surface.samples(samples.0, samples.1)
             }
         };
-        Ok(surface.aspect(self.aspect.library()).z_scale(self.z_scale))
+        Ok(surface.aspect(self.aspect).z_scale(self.z_scale))
     }
 
     /// Why the surface cannot be sampled, and what can be done about it.
@@ -163,8 +146,8 @@ impl Sheets {
     /// The file that is read, if there is one.
     pub(in crate::cli) fn file(&self) -> Option<PathBuf> {
         match &self.input {
-            Input::File(path) | Input::Points(path) => Some(path.clone()),
-            Input::Formulas { .. } | Input::Parametric { .. } => None,
+            SurfaceSource::File(path) | SurfaceSource::Points(path) => Some(path.clone()),
+            SurfaceSource::Formulas { .. } | SurfaceSource::Parametric { .. } => None,
         }
     }
 
@@ -172,7 +155,7 @@ impl Sheets {
     fn nothing_to_draw(&self, outside_domain: bool) -> String {
         let range = |(from, to): (f64, f64)| format!("{from}:{to}");
         match &self.input {
-            Input::Formulas { texts, domain, samples, .. } => {
+            SurfaceSource::Formulas { texts, domain, samples, .. } => {
                 let x = self.options.x.unwrap_or(DEFAULT_RANGE);
                 let y = self.options.y.unwrap_or(DEFAULT_RANGE);
                 let what = match domain {
@@ -190,13 +173,13 @@ impl Sheets {
                     range(y)
                 )
             }
-            Input::Parametric { u, v, .. } => format!(
+            SurfaceSource::Parametric { u, v, .. } => format!(
                 "no sample has a place in space: the formulas have no values for u in {} and v in \
                  {}; give another range by --u and --v",
                 range(*u),
                 range(*v)
             ),
-            Input::File(path) | Input::Points(path) => {
+            SurfaceSource::File(path) | SurfaceSource::Points(path) => {
                 format!("{}: no sample has a height: nothing to draw", path.display())
             }
         }
@@ -205,12 +188,12 @@ impl Sheets {
     /// What a picture of it is called.
     pub(in crate::cli) fn title(&self) -> String {
         match &self.input {
-            Input::Formulas { texts, .. } => {
+            SurfaceSource::Formulas { texts, .. } => {
                 let texts: Vec<&str> = texts.iter().map(|text| text.trim()).collect();
                 format!("z = {}", texts.join(", "))
             }
-            Input::Parametric { .. } => "parametric surface".to_owned(),
-            Input::File(path) | Input::Points(path) => paths::title(path),
+            SurfaceSource::Parametric { .. } => "parametric surface".to_owned(),
+            SurfaceSource::File(path) | SurfaceSource::Points(path) => paths::title(path),
         }
     }
 

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hiddenline::stages::surface::formula::{Formula, Variables};
-use hiddenline::stages::surface::{Duplicates, HeightOptions, MAX_SAMPLES};
+use hiddenline::stages::surface::{Aspect, Duplicates, HeightOptions, MAX_SAMPLES};
 
-use super::sheets::{Aspect, Input, Sheets};
+use super::input::{SurfaceInput, SurfaceSource};
+use crate::cli::choice::one_of;
 use crate::cli::formulas::in_formula;
 use crate::cli::values;
 
@@ -14,7 +15,7 @@ use crate::cli::values;
 /// that has this has an argument of the name `expression` for them.
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
-pub(in crate::cli) struct SheetArgs {
+pub(in crate::cli) struct SurfaceInputArgs {
     /// Heights from a file; `-` is standard input
     ///
     /// Rows of numbers, ESRI ASCII grid, NPY, NPZ, or a gray PNG or TIFF, recognized by content.
@@ -58,64 +59,40 @@ pub(in crate::cli) struct SheetArgs {
     #[arg(long, value_name = "HEIGHT", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["expression", "parametric"])]
     nodata: Option<f64>,
-    /// Which of several points with the same x and y is kept [default: error]
-    #[arg(long, value_enum, requires = "points")]
+    /// Which of several points with the same x and y to keep [default: error]
+    #[arg(long, value_parser = one_of::<Duplicates>(), requires = "points")]
     #[arg(conflicts_with_all = ["expression", "grid", "parametric"])]
-    duplicates: Option<DuplicatesName>,
+    duplicates: Option<Duplicates>,
     /// Factor for all heights
     #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(default_value_t = 1.0)]
     z_scale: f64,
     /// Whether heights are drawn to the scale of x and y
     ///
-    /// box: heights are scaled so that the box around the surface is 0.4 times as high as the longer
-    /// side of its base, then by --z-scale. The default is box, but data with --parametric.
-    #[arg(long, value_enum)]
+    /// --z-scale applies on top. The default is box, but data with --parametric.
+    #[arg(long, value_parser = one_of::<Aspect>())]
     aspect: Option<Aspect>,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub(in crate::cli) enum DuplicatesName {
-    /// The first one in the file
-    First,
-    /// One with their mean height
-    Mean,
-    /// The highest one
-    Max,
-    /// None: different heights at one place are an error
-    Error,
-}
-
-impl DuplicatesName {
-    fn library(self) -> Duplicates {
-        match self {
-            Self::First => Duplicates::First,
-            Self::Mean => Duplicates::Mean,
-            Self::Max => Duplicates::Max,
-            Self::Error => Duplicates::Error,
-        }
-    }
-}
-
-impl SheetArgs {
+impl SurfaceInputArgs {
     /// The surface, if there is one; the error is a message about usage.
     pub(in crate::cli) fn sheets(
         self,
         texts: Vec<String>,
         default_samples: usize,
-    ) -> Result<Option<Sheets>, String> {
+    ) -> Result<Option<SurfaceInput>, String> {
         let samples = self.samples.unwrap_or((default_samples, default_samples));
         let mut default_aspect = Aspect::Box;
         let input = if let Some(path) = self.grid {
-            Input::File(path)
+            SurfaceSource::File(path)
         } else if let Some(path) = self.points {
-            Input::Points(path)
+            SurfaceSource::Points(path)
         } else if let Some(texts) = self.parametric {
             default_aspect = Aspect::Data;
             let formulas = parsed(&texts, Variables::Parameters)?;
             let formulas = formulas.try_into().map_err(|_| "give three formulas")?;
             let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
-            Input::Parametric { formulas: Box::new(formulas), u, v, samples }
+            SurfaceSource::Parametric { formulas: Box::new(formulas), u, v, samples }
         } else if !texts.is_empty() {
             let formulas = parsed(&texts, Variables::Plane)?;
             let domain = self.domain.map(|text| {
@@ -123,7 +100,7 @@ impl SheetArgs {
                 let parsed = parsed.map_err(|error| in_formula("--where", &text, &error));
                 parsed.map(|formula| (formula, text))
             });
-            Input::Formulas { texts, formulas, domain: domain.transpose()?, samples }
+            SurfaceSource::Formulas { texts, formulas, domain: domain.transpose()?, samples }
         } else {
             let is_given = self.x.is_some() || self.y.is_some() || self.samples.is_some();
             if self.nodata.is_some() {
@@ -136,7 +113,7 @@ impl SheetArgs {
             }
             return Ok(None);
         };
-        Ok(Some(Sheets {
+        Ok(Some(SurfaceInput {
             input,
             options: HeightOptions {
                 x: self.x,
@@ -144,7 +121,7 @@ impl SheetArgs {
                 flip_y: self.flip_y,
                 nodata: self.nodata,
             },
-            duplicates: self.duplicates.map_or(Duplicates::Error, DuplicatesName::library),
+            duplicates: self.duplicates.unwrap_or_default(),
             z_scale: self.z_scale,
             aspect: self.aspect.unwrap_or(default_aspect),
         }))
