@@ -2,7 +2,7 @@
 //!
 //! A face whose corners do not lie in one plane is as its triangles are: folded along the diagonals
 //! that cut it. Seen from where one of the triangles beside a diagonal faces the eye and the other
-//! does not, the contour of the model runs along it, though it is no edge.
+//! does not, the contour of the model runs along it, although it is not an edge.
 //!
 //! ```text
 //!    ●───────────●
@@ -26,7 +26,7 @@ pub struct Bend {
     pub triangles: [u32; 2],
 }
 
-/// The bends of all faces, face by face. A diagonal that is also an edge of the mesh is no bend. Exact;
+/// The bends of all faces, face by face. A diagonal that is also an edge of the mesh is not a bend. Exact;
 /// O(corners log corners of a face), in parallel.
 pub(crate) fn bends(
     mesh: &Mesh,

@@ -19,7 +19,7 @@ const SAMPLES: usize = 64;
 ///
 /// 1. It is an open surface that looks up or down along one axis everywhere, as terrain does.
 /// 2. It has a base: faces that look down, at the very bottom.
-/// 3. It stands on zero along one axis, and extends to both sides of zero along the other.
+/// 3. It starts at zero along one axis, and extends to both sides of zero along the other.
 ///
 /// O(faces).
 pub fn seems_y_up(mesh: &Mesh) -> bool {

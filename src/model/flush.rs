@@ -53,7 +53,7 @@ pub struct BoundaryPart {
 
 /// Finds the boundary edges that are flush, and splits those that are flush in part.
 ///
-/// `triangles` cover the faces of the mesh, as told by `triangle_faces`. Expected cost
+/// `triangles` cover the faces of the mesh, as listed in `triangle_faces`. Expected cost
 /// O((edges + triangles) log edges), where edges are those of the boundary; nothing without any.
 pub(super) fn flush_edges(
     mesh: &Mesh,

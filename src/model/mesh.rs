@@ -1,5 +1,4 @@
-//! Polygons and wires over shared points: what every reader produces and every later stage starts
-//! from.
+//! Polygons and wires over shared points: what every reader produces, and where every later stage starts.
 //!
 //! A reader fills a [`PolygonSoup`] with whatever the file says. [`Mesh::new`] turns it into a
 //! [`Mesh`] in which equal positions are one vertex and every face has at least three corners.
@@ -91,8 +90,8 @@ impl PolygonSoup {
 
 /// A polygon mesh: finite positions, no two of them equal, and faces of three corners or more.
 ///
-/// Consecutive corners of a face differ. Nothing else is promised: faces may be concave, bent, of
-/// zero area, and wound either way, and an edge may have any number of faces.
+/// Consecutive corners of a face differ. Nothing else is guaranteed: faces may be concave, bent, without
+/// area, and wound either way, and an edge may have any number of faces.
 ///
 /// A mesh may also hold *wires*, segments that border no face. They can be hidden but hide nothing.
 #[derive(Debug, Clone, Default)]
@@ -107,7 +106,7 @@ pub struct Mesh {
     coordinate_error: f64,
 }
 
-/// Meshes are equal when everything in them is, except for how precisely they were written down.
+/// Meshes are equal if everything but their coordinate error is.
 impl PartialEq for Mesh {
     fn eq(&self, other: &Self) -> bool {
         self.positions == other.positions
@@ -120,7 +119,7 @@ impl PartialEq for Mesh {
     }
 }
 
-/// What was merged or left out on the way from soup to mesh.
+/// What was merged or left out between soup and mesh.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Repairs {
     /// Positions that were equal to an earlier one and became the same vertex.
@@ -192,7 +191,7 @@ impl Mesh {
     /// Merges equal positions, and removes repeated corners, faces left with fewer than three, and
     /// wires without length or given twice.
     ///
-    /// Positions are equal when their coordinates are (−0 is 0). The first of them stands for all,
+    /// Positions are equal if their coordinates are (−0 is 0). The first of them represents all,
     /// and vertices keep the order of their first appearance. Positions that nothing uses are left
     /// out; they need not be finite. O(vertices + corners).
     ///

@@ -1,21 +1,21 @@
 //! Polygons into triangles: exact ear clipping.
 //!
-//! The polygon is dropped onto the coordinate plane across the largest component of its Newell
-//! normal, which loses no bit of the coordinates. There an *ear* is a corner that turns the
-//! polygon's own way and whose triangle holds no other corner:
+//! The polygon is projected onto the coordinate plane perpendicular to the largest component of its Newell
+//! normal, which is exact. There an *ear* is a corner that turns the same way as the polygon and whose
+//! triangle contains no other corner:
 //!
 //! ```text
 //!            ● next
 //!           ╱ ╲               corner, next and previous are cut off
-//!   corner ●   ╲              when no other vertex of the polygon
-//!           ╲   ╲             lies in or on the triangle
+//!   corner ●   ╲              if no other vertex of the polygon
+//!           ╲   ╲             is in or on the triangle
 //!            ●───●
 //!      previous
 //! ```
 //!
-//! A vertex at the very place of one of the three corners does not count, so that keyhole polygons
-//! (a hole joined to the outline by a bridge that is walked twice) come out right. A polygon that
-//! crosses itself has no right answer; it still yields `corners − 2` triangles.
+//! A vertex equal to one of the three corners does not count, so that keyhole polygons (a hole joined to
+//! the outline by a bridge that runs both ways) are handled. A polygon that crosses itself has no correct
+//! answer; it still yields `corners − 2` triangles.
 
 use crate::model::mesh::Mesh;
 use crate::predicates::{Sign, orient2d};
@@ -64,7 +64,7 @@ pub fn newell_normal(positions: &[DVec3], corners: &[u32]) -> DVec3 {
     let Some((&first, rest)) = corners.split_first() else {
         return normal;
     };
-    // Relative to the first corner, so that a place far from the origin costs no digits.
+    // Relative to the first corner, so that no digits are lost far from the origin.
     let base = positions[first as usize];
     for pair in rest.windows(2) {
         let (a, b) = (positions[pair[0] as usize] - base, positions[pair[1] as usize] - base);
@@ -73,7 +73,7 @@ pub fn newell_normal(positions: &[DVec3], corners: &[u32]) -> DVec3 {
     normal
 }
 
-/// Work space for one polygon after the other.
+/// Scratch space, reused from polygon to polygon.
 #[derive(Default)]
 struct EarClipper {
     points: Vec<DVec2>,
@@ -103,7 +103,7 @@ impl EarClipper {
             *triangle = [before, corner, after].map(|i| corners[i as usize]);
             self.next[before as usize] = after;
             self.previous[after as usize] = before;
-            // Going on two corners further spreads the cuts around a convex polygon.
+            // Continuing two corners further spreads the cuts around a convex polygon.
             corner = self.next[after as usize];
         }
     }
@@ -128,7 +128,7 @@ impl EarClipper {
         }));
     }
 
-    /// The first ear at or after `start`; if there is none, the first straight corner, else `start`.
+    /// The first ear at or after `start`; failing that, the first straight corner, or else `start`.
     fn find_ear(&self, start: u32, n_left: usize) -> u32 {
         let mut straight = None;
         let mut corner = start;
@@ -153,7 +153,7 @@ impl EarClipper {
             .map(|i| self.points[i as usize])
     }
 
-    /// Whether the triangle at `corner` holds no other vertex, neither inside nor on its border.
+    /// Whether the triangle at `corner` contains no other vertex, neither inside nor on its border.
     fn is_empty(&self, corner: u32) -> bool {
         let [a, b, c] = self.triangle(corner);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));

@@ -6,37 +6,37 @@ use rustc_hash::FxHashMap;
 
 use crate::plot::Polylines;
 
-/// Ink as vertices and straight edges, nothing twice.
+/// Ink as vertices and straight edges, without duplicates.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Graph {
-    /// Page positions in millimeters, nearly by growing x, then y.
+    /// Page positions in millimeters, approximately sorted by x, then y.
     pub positions: Vec<DVec2>,
-    /// Pairs of different vertices, the lower one first, in growing order, each pair once.
+    /// Pairs of different vertices, the lower one first, in ascending order, each pair once.
     pub edges: Vec<[u32; 2]>,
-    /// Vertices at which the pen is only set down: strokes without extent, where no edge ends.
+    /// Vertices at which the pen is only set down: dots where no edge ends.
     pub dots: Vec<u32>,
 }
 
-/// How the points at which strokes meet are known.
+/// How the points at which strokes meet are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Joints<'a> {
-    /// Points within this distance in millimeters are one; zero joins equal points only.
+    /// Points within this distance, in millimeters, are joined; zero joins equal points only.
     ///
-    /// Points are visited by growing x, then y. Each joins the nearest group whose first point is
-    /// within the distance and whose box then has no longer diagonal than that, or begins a group.
-    /// A group's joint is the middle of its box. So no point moves farther than half of the
-    /// distance, however long the chains of near points are, and the order of the strokes does not
-    /// matter.
+    /// Points are visited in ascending order of x, then y. Each joins the nearest group whose first point
+    /// is within the distance, provided that the diagonal of the group's box stays within it too;
+    /// otherwise it starts a group. A group's joint is the center of its box. So no point moves farther
+    /// than half of the distance, however long the chains of near points are, and the order of the
+    /// strokes does not matter.
     Near(f64),
-    /// Numbers for every point of every polyline, in order: equal numbers are one point, the
-    /// first of them. Equal points are joined as well. Points without a number are ignored.
+    /// Numbers for every point of every polyline, in order: points with equal numbers are one, the first
+    /// of them. Equal points are joined as well. Points without a number are ignored.
     Numbered(&'a [u32]),
 }
 
 impl Graph {
     /// Builds the graph of `lines`; points that are not finite are left out with their segments.
     ///
-    /// O(n log n) time, about 60 bytes a point.
+    /// O(n log n) time, about 60 bytes per point.
     pub fn new(lines: &Polylines, joints: Joints<'_>) -> Self {
         let points = joined_points(lines, joints);
         let tolerance = match joints {
@@ -66,7 +66,7 @@ impl Graph {
         graph
     }
 
-    /// Leaves out repeated dots and those an edge passes over at its end.
+    /// Removes repeated dots and those at the end of an edge.
     fn drop_covered_dots(&mut self) {
         let mut inked = vec![false; self.positions.len()];
         for edge in &self.edges {
@@ -90,7 +90,7 @@ impl Graph {
     }
 }
 
-/// No vertex, no half-edge.
+/// Stands for no vertex or no half-edge.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// An edge as one number, the lower vertex in the upper half.
@@ -98,7 +98,7 @@ pub(super) fn edge_key(a: u32, b: u32) -> u64 {
     (u64::from(a.min(b)) << 32) | u64::from(a.max(b))
 }
 
-/// Sorts edges and leaves out the repeated ones.
+/// Sorts edges and removes repeated ones.
 pub(super) fn unique_edges(mut keys: Vec<u64>) -> Vec<[u32; 2]> {
     keys.par_sort_unstable();
     keys.dedup();
@@ -165,7 +165,7 @@ struct Group {
 }
 
 impl Group {
-    /// The very point where all are equal.
+    /// Exactly the point if all are equal.
     fn middle(&self) -> DVec2 {
         if self.low == self.high { self.first } else { self.low.midpoint(self.high) }
     }
@@ -175,7 +175,7 @@ impl Group {
     }
 }
 
-/// First points of groups by square cells as wide as the tolerance, so that near ones lie in nine cells.
+/// First points of groups, in square cells as wide as the tolerance, so near ones are within nine cells.
 struct WeldCells {
     size: f64,
     heads: FxHashMap<(i64, i64), u32>,
@@ -207,7 +207,7 @@ impl WeldCells {
         }
         let (x, y) = self.cell(p);
         let mut best: Option<(f64, u32)> = None;
-        // Points come by growing x: none kept lies in a column to the right.
+        // Points come in ascending order of x: none so far is in a column to the right.
         for column in [x.saturating_sub(1), x] {
             for row in [y.saturating_sub(1), y, y.saturating_add(1)] {
                 let mut vertex = self.heads.get(&(column, row)).copied().unwrap_or(NONE);
@@ -255,7 +255,7 @@ impl IncidentEdges {
         Self { starts, half_edges }
     }
 
-    /// Half-edges that leave `vertex`, by growing number.
+    /// Half-edges that leave `vertex`, in ascending order.
     pub(super) fn of(&self, vertex: u32) -> &[u32] {
         let range = self.starts[vertex as usize]..self.starts[vertex as usize + 1];
         &self.half_edges[range.start as usize..range.end as usize]

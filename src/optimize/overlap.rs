@@ -1,23 +1,23 @@
-//! Ink that lies on other ink: edges that run along each other are cut where either one ends, and
-//! the pieces they share are kept once.
+//! Doubled ink: edges that overlap are cut where either one ends, and the pieces they share are kept
+//! once.
 //!
 //! ```text
 //!   A ────────────────── B             A ──── C ────────── B
 //!          C ─────────────── D    ─►          C ────────── B ─── D
 //! ```
 //!
-//! A vertex cuts an edge only if another edge runs on from it along the cut one. So lines that
-//! merely touch or cross stay as they are.
+//! A vertex cuts an edge only if another edge continues from it along the cut one. So lines that merely
+//! touch or cross stay as they are.
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::graph::{Graph, IncidentEdges, edge_key, target, unique_edges};
 
-/// Cuts edges where others end on them and run along them, and keeps shared pieces once.
+/// Cuts edges where overlapping ones end, and keeps shared pieces once.
 ///
 /// With `tolerance_mm` of zero only exactly collinear edges overlap (robust's `orient2d`);
-/// otherwise those that deviate no farther than that. Ink moves by `tolerance_mm` at most.
+/// otherwise edges that deviate by at most that. Ink moves by at most `tolerance_mm`.
 ///
 /// Vertices are found in a grid whose cells hold about one. An edge of length `l` visits about `l`
 /// over the width of a cell: O(vertices + edges) for strokes much shorter than the page, and
@@ -86,7 +86,7 @@ fn inner_vertices(
     inner.into_iter().map(|(_, vertex)| vertex).collect()
 }
 
-/// A straight piece with the deviation at which ink still counts as lying on it.
+/// A straight piece, and the largest deviation at which ink still counts as being on it.
 struct InkSegment {
     from: DVec2,
     to: DVec2,
@@ -94,7 +94,7 @@ struct InkSegment {
 }
 
 impl InkSegment {
-    /// Whether `p` lies on the piece, strictly between its ends.
+    /// Whether `p` is on the piece, strictly between its ends.
     fn passes(&self, p: DVec2) -> bool {
         let along = self.to - self.from;
         let t = (p - self.from).dot(along);

@@ -7,7 +7,7 @@ use crate::plot::{Layer, Plot, Polylines};
 /// Splits every layer so that no part draws more than `distance_mm`.
 ///
 /// Without an overlap only whole strokes are moved to the next part, and a stroke longer than the
-/// distance is a part of its own. With one, strokes are cut where the distance is drawn, and the next
+/// distance is a separate part. With one, strokes are cut where the distance is drawn, and the next
 /// part begins `overlap_mm` before the cut, so that no gap shows; an overlap is at most half of the
 /// distance.
 ///

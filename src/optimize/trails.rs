@@ -1,13 +1,12 @@
 //! The fewest strokes that draw a graph, passing as straight as possible through every vertex.
 //!
-//! A connected part with `k` vertices of odd degree cannot be drawn in fewer than `max(1, k / 2)`
-//! strokes without drawing anything twice (Euler 1736, Hierholzer 1873). Here:
+//! A connected part with `k` vertices of odd degree needs at least `max(1, k / 2)` strokes if nothing is
+//! drawn twice (Euler 1736, Hierholzer 1873). Here:
 //!
-//! 1. At every vertex the edges are paired off, straightest pairs first; at an odd vertex one edge
-//!    stays single and a stroke ends. The pairs make up trails: `k / 2` open ones in each part,
-//!    and closed ones.
-//! 2. A closed trail is spliced into another one at a vertex both pass, by pairing their four
-//!    edges there the other way; cheapest splices come first, as in Kruskal's spanning tree.
+//! 1. At every vertex the edges are paired, straightest pairs first; at an odd vertex one edge stays
+//!    single and a stroke ends. The pairs form trails: `k / 2` open ones in each part, and closed ones.
+//! 2. A closed trail is spliced into another at a vertex on both, by pairing their four edges there
+//!    differently; the straightest splices come first, as in Kruskal's spanning tree.
 //!
 //! ```text
 //!      │    ╭──╮            │╭──╮         one open and one closed trail meet in ●:
@@ -66,7 +65,7 @@ const MAX_DEGREE_TRIED: usize = 6;
 /// Degrees up to this are paired greedily from all pairs; beyond, opposite edges by angle.
 const MAX_DEGREE_GREEDY: usize = 64;
 
-/// For each half-edge the one at the same vertex its stroke goes on with; `NONE` ends a stroke.
+/// For each half-edge, the one at the same vertex with which its stroke continues; `NONE` ends a stroke.
 struct Pairing<'a> {
     graph: &'a Graph,
     mate: Vec<u32>,
@@ -132,7 +131,7 @@ impl Pairing<'_> {
         }
     }
 
-    /// Finds the pairing of least total bend; with an odd number one half-edge stays single.
+    /// Finds the pairing with the least total bend; of an odd number, one half-edge stays single.
     fn try_pairings(
         &self,
         open: &[u32],
@@ -159,8 +158,8 @@ impl Pairing<'_> {
         }
     }
 
-    /// Follows the stroke that leaves its vertex along `half_edge` until it ends or comes back,
-    /// calling `visit` with each half-edge in walking direction.
+    /// Follows the stroke that leaves its vertex along `half_edge` until it ends or returns, calling
+    /// `visit` with each half-edge in the direction of the walk.
     fn follow(&self, half_edge: u32, mut visit: impl FnMut(u32)) {
         let mut h = half_edge;
         loop {
@@ -222,7 +221,7 @@ fn splice_closed(pairing: &mut Pairing<'_>, stars: &IncidentEdges) {
     splices.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
     for (_, a, c) in splices {
         if sets.can_splice(a, c) {
-            // Splices made before at this vertex may have changed the pairs: look again.
+            // Earlier splices at this vertex may have changed the pairs.
             let (_, [(p, q), (r, s)]) = repairing(pairing, a, c);
             for h in [p, q, r, s].into_iter().filter(|&h| h != NONE) {
                 pairing.mate[h as usize] = NONE;
@@ -234,8 +233,8 @@ fn splice_closed(pairing: &mut Pairing<'_>, stars: &IncidentEdges) {
     }
 }
 
-/// The straighter of the two other pairings of the passes of `a` and `c` through their vertex, and
-/// by how much it bends more than the present one.
+/// The straighter of the two other pairings of the passes of `a` and `c` through their vertex, and how
+/// much more it bends than the present one.
 fn repairing(pairing: &Pairing<'_>, a: u32, c: u32) -> (f64, [(u32, u32); 2]) {
     let (b, d) = (pairing.mate[a as usize], pairing.mate[c as usize]);
     let now = pairing.bend(a, b) + pairing.bend(c, d);

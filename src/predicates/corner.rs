@@ -21,7 +21,7 @@ use glam::DVec3;
 
 /// What meets at a corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Place {
+pub enum CornerPlace {
     /// A vertex of the input.
     Vertex(u32),
     /// The line through two vertices, and a plane that they lie strictly on both sides of.
@@ -34,7 +34,7 @@ pub enum Place {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// The exact place.
-    pub place: Place,
+    pub place: CornerPlace,
     /// The place, rounded.
     pub point: DVec3,
     /// No coordinate of `point` is off by more than this.
@@ -42,7 +42,7 @@ pub struct Corner {
 }
 
 /// Largest error of a corner, as a part of its largest coordinate, that is left alone: above it the
-/// point is computed anew from integers. It bounds a construction, not a decision.
+/// point is computed again from integers. It bounds a construction, not a decision.
 const CORNER_ERROR: f64 = 1.0 / (1u64 << 44) as f64;
 
 impl Planes<'_> {
@@ -69,12 +69,17 @@ impl Planes<'_> {
     /// A vertex as a corner.
     #[inline]
     pub fn vertex(&self, vertex: u32) -> Corner {
-        Corner { place: Place::Vertex(vertex), point: self.position(vertex), error: 0.0 }
+        Corner { place: CornerPlace::Vertex(vertex), point: self.position(vertex), error: 0.0 }
     }
 
     /// The corner at `place`, where a plane cuts between `a` and `b`; `at` are the plane's values
     /// there, whose true signs must be opposite.
-    pub fn corner_between(&self, [a, b]: [&Corner; 2], at: [Estimate; 2], place: Place) -> Corner {
+    pub fn corner_between(
+        &self,
+        [a, b]: [&Corner; 2],
+        at: [Estimate; 2],
+        place: CornerPlace,
+    ) -> Corner {
         let [of_a, of_b] = at;
         let difference = of_a.value - of_b.value;
         if self.in_window() && difference.abs() > 2.0 * (of_a.error + of_b.error) {
@@ -95,7 +100,7 @@ impl Planes<'_> {
         self.exact_corner(place)
     }
 
-    fn exact_corner(&self, place: Place) -> Corner {
+    fn exact_corner(&self, place: CornerPlace) -> Corner {
         let Homogeneous { x, w } = self.homogeneous(&place);
         // Adding zero turns −0 into 0.
         let point = DVec3::from_array(x.map(|x| ratio(&x, &w))) + DVec3::ZERO;
@@ -147,10 +152,10 @@ impl Planes<'_> {
     }
 
     /// A place in homogeneous coordinates.
-    fn homogeneous(&self, place: &Place) -> Homogeneous {
+    fn homogeneous(&self, place: &CornerPlace) -> Homogeneous {
         match *place {
-            Place::Vertex(vertex) => Homogeneous::from(self.position(vertex)),
-            Place::OnEdge(ends, plane) => {
+            CornerPlace::Vertex(vertex) => Homogeneous::from(self.position(vertex)),
+            CornerPlace::OnEdge(ends, plane) => {
                 let plane = self.coefficients(plane);
                 let [p, q] = ends.map(|vertex| Homogeneous::from(self.position(vertex)));
                 let (of_p, of_q) = (evaluated(&plane, &p), evaluated(&plane, &q));
@@ -160,7 +165,7 @@ impl Planes<'_> {
                 });
                 turned(x, w)
             }
-            Place::InFace(planes) => {
+            CornerPlace::InFace(planes) => {
                 let [a, b, c] = planes.map(|plane| self.coefficients(plane));
                 let normal = |p: &[Dyadic; 4]| [p[0].clone(), p[1].clone(), p[2].clone()];
                 let products = [(&b, &c), (&c, &a), (&a, &b)]
@@ -188,14 +193,14 @@ fn triple((u, du): (DVec3, f64), (v, dv): (DVec3, f64), (t, dt): (DVec3, f64)) -
     }
 }
 
-/// Whether the numbers of a place tell that it lies in a plane.
+/// Whether a place is in a plane by its definition.
 #[inline]
-fn is_known_within(place: &Place, plane: &Plane) -> bool {
+fn is_known_within(place: &CornerPlace, plane: &Plane) -> bool {
     let has = |vertex: &u32| plane.vertices.contains(vertex);
     match place {
-        Place::Vertex(vertex) => has(vertex),
-        Place::OnEdge(ends, cut) => *cut == plane.name || ends.iter().all(has),
-        Place::InFace(planes) => planes.contains(&plane.name),
+        CornerPlace::Vertex(vertex) => has(vertex),
+        CornerPlace::OnEdge(ends, cut) => *cut == plane.name || ends.iter().all(has),
+        CornerPlace::InFace(planes) => planes.contains(&plane.name),
     }
 }
 
@@ -208,21 +213,21 @@ fn turned(x: [Dyadic; 3], w: Dyadic) -> Homogeneous {
     }
 }
 
-/// Whether the numbers of three places tell that they are on one line.
-fn is_known_collinear(places: [&Place; 3]) -> bool {
+/// Whether three places are on one line by their definition.
+fn is_known_collinear(places: [&CornerPlace; 3]) -> bool {
     let [a, b, c] = places;
     if a == b || b == c || c == a {
         return true;
     }
     let edge = places.iter().find_map(|place| match place {
-        Place::OnEdge(ends, _) => Some(*ends),
+        CornerPlace::OnEdge(ends, _) => Some(*ends),
         _ => None,
     });
     edge.is_some_and(|edge| {
         places.iter().all(|place| match place {
-            Place::Vertex(vertex) => edge.contains(vertex),
-            Place::OnEdge(ends, _) => *ends == edge || *ends == [edge[1], edge[0]],
-            Place::InFace(_) => false,
+            CornerPlace::Vertex(vertex) => edge.contains(vertex),
+            CornerPlace::OnEdge(ends, _) => *ends == edge || *ends == [edge[1], edge[0]],
+            CornerPlace::InFace(_) => false,
         })
     })
 }

@@ -33,7 +33,7 @@ pub struct Cut {
 }
 
 /// Largest error of a cut's rounded parameter that is left alone: above it the parameter is
-/// computed anew from exact integers. It bounds a construction, not a decision.
+/// computed again from exact integers. It bounds a construction, not a decision.
 const PARAMETER_ERROR: f64 = 1.0 / (1u64 << 36) as f64;
 
 impl Cut {

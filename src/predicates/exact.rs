@@ -1,10 +1,9 @@
-//! The exact path: polynomials in `f64` inputs, evaluated in integers of any size.
+//! The exact path: polynomials in `f64` inputs, evaluated with integers of arbitrary size.
 //!
-//! Every finite `f64` is an integer times a power of two. The inputs of one evaluation are brought
-//! to one power of two (`Lattice`); if they then have at most 40 bits, a triple product of their
-//! differences fits `i128`, which is the usual case of small integer coordinates. Otherwise
-//! arbitrary-size integers take over. Either way the result is the exact value, up to a positive
-//! factor that is the same for all results of one call.
+//! Every finite `f64` is an integer times a power of two. The inputs of one evaluation are scaled to a
+//! common power of two (`Lattice`). If they then have at most 40 bits, as small integer coordinates do, a
+//! triple product of their differences fits `i128`; otherwise integers of arbitrary size are used. Either
+//! way the result is the exact value, up to a positive factor that is the same for all results of one call.
 
 use super::Sign;
 use dashu_int::IBig;
@@ -149,7 +148,7 @@ pub fn direction_volumes(direction: DVec3, a: DVec3, b: DVec3, x: [DVec3; 2]) ->
     }
 }
 
-/// Where a polygon's facing is judged from.
+/// Where a polygon is seen from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Towards {
     /// From a point.
@@ -178,7 +177,7 @@ pub fn facing(polygon: impl IntoIterator<Item = DVec3>, towards: Towards) -> Sig
     sum.sign()
 }
 
-/// Whether `a`, `b` and `c` lie on one line.
+/// Whether `a`, `b` and `c` are on one line.
 pub fn collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
     let lattice = Lattice::of(&[a, b, c]);
     let [a, b, c] = [a, b, c].map(|p| lattice.big(p));
@@ -192,8 +191,7 @@ pub fn parallel(a: DVec3, b: DVec3, direction: DVec3) -> bool {
     cross(&minus(&b, &a), &Lattice::of(&[direction]).big(direction)).iter().all(|x| x.is_zero())
 }
 
-/// A number `value · 2^exponent`: what is left when inputs of several scales meet in one
-/// polynomial.
+/// A number `value · 2^exponent`, for polynomials whose inputs have several scales.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dyadic {
     value: IBig,
@@ -273,7 +271,7 @@ pub(super) fn same_scale([a, b]: [Dyadic; 2]) -> [IBig; 2] {
 }
 
 /// `(x − eye) · forward − near · forward · forward` for two points `x`, up to one positive factor:
-/// where they stand to the near plane.
+/// on which side of the near plane they are.
 pub fn near_distances(eye: DVec3, forward: DVec3, near: f64, x: [DVec3; 2]) -> [IBig; 2] {
     let (eye, forward) = (dyadic(eye), dyadic(forward));
     let limit = Dyadic::from(near) * dot(&forward, &forward);
@@ -304,7 +302,7 @@ pub fn near_cut_values(
     }))
 }
 
-/// Whether `x` lies within `distance` of the plane of `triangle`, which must have an area.
+/// Whether `x` is within `distance` of the plane of `triangle`, which must have an area.
 pub fn within_distance(triangle: [DVec3; 3], x: DVec3, distance: f64) -> bool {
     let [p, q, r] = triangle.map(dyadic);
     let normal = cross(&minus(&q, &p), &minus(&r, &p));
@@ -322,7 +320,7 @@ pub fn sign(x: &IBig) -> Sign {
 
 /// `a / b` rounded to within a few units in the last place; `b` must not be zero.
 pub fn ratio(a: &IBig, b: &IBig) -> f64 {
-    // Both lose the same low bits; 900 bits stay below the largest double.
+    // Both drop the same low bits; 900 bits stay below the largest double.
     let excess = a.bit_len().max(b.bit_len()).saturating_sub(900);
     let (a, b) = (a.clone() >> excess, b.clone() >> excess);
     a.to_f64().value() / b.to_f64().value()

@@ -49,7 +49,7 @@ mod planes;
 mod sight;
 mod volume;
 
-pub use corner::{Corner, Place};
+pub use corner::{Corner, CornerPlace};
 pub use cut::{Cut, CutPlane};
 pub use pierced::{Homogeneous, PiercePoint};
 pub use planes::{Plane, PlaneName, Planes};

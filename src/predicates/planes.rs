@@ -1,4 +1,4 @@
-//! Planes that faces are cut by, and on which side of them a corner lies, exactly.
+//! Planes that cut faces, and on which side of them a corner is, exactly.
 //!
 //! ```text
 //!   Triangle(t)                Across { axis, at }         Near
@@ -8,9 +8,9 @@
 //!       counter-clockwise          at                   kept is + or on it
 //! ```
 //!
-//! The value of a plane at a point is a polynomial in numbers of the input; its sign is found as all
-//! signs are, see [`super`]. Cutting faces by planes and keeping the planes, not rounded corners, is
-//! the plane-based representation of G. Bernstein, D. Fussell, "Fast, exact, linear booleans" (2009).
+//! The value of a plane at a point is a polynomial in the input; its sign is computed like all others, see
+//! [`super`]. Cutting faces by planes and keeping the planes, not rounded corners, is the plane-based
+//! representation of G. Bernstein, D. Fussell, "Fast, exact, linear booleans" (2009).
 
 use super::exact::{self, Dyadic};
 use super::sight::fits_filter;
@@ -20,7 +20,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A plane by what it is made of.
+/// A plane by what defines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PlaneName {
     /// The plane of a triangle of the scene, which must have an area.
@@ -36,7 +36,7 @@ pub enum PlaneName {
     Near,
 }
 
-/// A plane made ready for many questions.
+/// A plane prepared for many tests.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane {
     pub(super) name: PlaneName,
@@ -49,13 +49,13 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// What it is made of.
+    /// What defines it.
     pub fn name(&self) -> PlaneName {
         self.name
     }
 }
 
-/// Vertices and triangles, and the camera where there is one: what planes and corners are made of.
+/// Vertices and triangles, and the camera if there is one: what defines planes and corners.
 #[derive(Debug)]
 pub struct Planes<'a> {
     positions: &'a [DVec3],
@@ -67,11 +67,11 @@ pub struct Planes<'a> {
     n_exact: AtomicU64,
 }
 
-/// No vertex has this number.
+/// Stands for no vertex.
 const NO_VERTEX: [u32; 3] = [u32::MAX; 3];
 
 impl<'a> Planes<'a> {
-    /// Planes without a camera: there is no near plane. O(vertices).
+    /// Planes without a camera, so without a near plane. O(vertices).
     pub fn new(positions: &'a [DVec3], triangles: &'a [[u32; 3]]) -> Self {
         let in_window = positions.par_iter().with_min_len(1 << 14).all(fits_filter);
         Self {
@@ -123,7 +123,7 @@ impl<'a> Planes<'a> {
         matches!(self.viewpoint, Some(Viewpoint::Eye(_)))
     }
 
-    /// How many questions floating point could not answer so far.
+    /// How many tests floating point could not decide so far.
     pub fn n_exact(&self) -> u64 {
         self.n_exact.load(Relaxed)
     }
@@ -140,7 +140,7 @@ impl<'a> Planes<'a> {
         }
     }
 
-    /// Whether bounds of errors hold.
+    /// Whether the error bounds apply.
     pub(super) fn in_window(&self) -> bool {
         self.in_window
     }
@@ -155,7 +155,7 @@ impl<'a> Planes<'a> {
         !exact::collinear(p, q, r)
     }
 
-    /// A plane made ready.
+    /// Prepares a plane.
     #[inline]
     pub fn plane(&self, name: PlaneName) -> Plane {
         match name {

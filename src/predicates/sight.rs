@@ -174,14 +174,14 @@ impl<'a> Sight<'a> {
         })
     }
 
-    /// Whether the numbers of a constructed point's edges tell that it is on a line.
+    /// Whether the edges of a constructed point show that it is on a line.
     #[inline]
     fn is_on_edge(&self, vertex: u32, p: u32, q: u32) -> bool {
         vertex as usize >= self.n_vertices
             && self.pierced[vertex as usize - self.n_vertices].is_on_edge(p, q)
     }
 
-    /// Whether the numbers of a constructed point's edges tell that it is in a triangle's plane.
+    /// Whether the edges of a constructed point show that it is in a triangle's plane.
     #[inline]
     fn is_in_plane(&self, vertex: u32, triangle: [u32; 3]) -> bool {
         vertex as usize >= self.n_vertices

@@ -72,7 +72,7 @@ impl<'a> Solid<'a> {
 
     /// The side of a point when floating point is certain of it: 1, −1, or 0 for unknown.
     ///
-    /// One bound serves for all points of the scene, which is enough to tell most that are not
+    /// One bound serves for all points of the scene, which is enough to recognize most that are not
     /// nearly in the plane.
     #[inline(always)]
     pub fn certain_side(&self, plane: &QuickPlane, point: DVec3) -> i32 {
@@ -90,7 +90,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// The side of `x` without a plane at hand.
+    /// The side of `x`, without a prepared plane.
     pub fn side_of(&self, triangle: [u32; 3], x: u32) -> Sign {
         self.side(&self.plane(triangle), triangle, x)
     }

@@ -2,13 +2,13 @@
 //!
 //! tobj itself fails on byte order marks, comments after a record, continued lines, colors
 //! on some vertices only, and numbers of normals or texture coordinates that do not exist. It
-//! reports no line, and some input makes it panic. This filter, one pass over the bytes into one
-//! buffer, leaves only vertices and faces that are known to be valid. Names of groups and materials
+//! reports no line numbers, and some input makes it panic. This filter, one pass over the bytes into one
+//! buffer, keeps only vertices and faces known to be valid. Names of groups and materials
 //! are kept separately, so tobj sees a single object and shared vertices stay shared.
 //!
 //! Polylines (`l`) become segments at the end of the text, as faces of two corners. A vertex that is
-//! not finite becomes `v NaN N 0`, where N says which one: tobj drops what no face uses, so only
-//! those in use come back.
+//! not finite becomes `v NaN N 0`, where N says which one: tobj drops unused vertices, so only those in
+//! use come back.
 //!
 //! A comment ends at its line's end, *before* lines that end in a backslash are joined.
 
@@ -46,8 +46,8 @@ const MOST_UNKNOWN_KINDS: usize = 6;
 /// An OBJ file reduced to what tobj needs.
 #[derive(Debug, Default)]
 pub(super) struct Filtered {
-    /// `v x y z`, then or between them `f i j k …`, at last `f i j` for segments: ASCII, and all
-    /// numbers are decimal and in range.
+    /// `v x y z` and `f i j k …` in any order, then `f i j` for segments: ASCII, with all numbers decimal
+    /// and in range.
     pub(super) text: Vec<u8>,
     /// Vertices that are not finite: line and fault of each.
     pub(super) unsound: Vec<(usize, Fault)>,
@@ -60,7 +60,7 @@ pub(super) struct Filtered {
     pub(super) parts: Vec<MeshPart>,
     /// The first face of each run of faces that have the same part, and that part.
     pub(super) runs: Vec<(usize, u32)>,
-    /// Faces of one or two corners, left out, and the line of the first.
+    /// How many faces of one or two corners were left out, and the line of the first.
     pub(super) n_degenerate: usize,
     pub(super) first_degenerate_line: Option<usize>,
     pub(super) notices: Vec<Notice>,
@@ -82,7 +82,7 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 /// Reduces an OBJ file.
 ///
 /// # Errors
-/// A vertex with fewer than three finite numbers, or a face with a vertex that is none.
+/// A vertex with fewer than three finite numbers, or a face with an invalid vertex.
 pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     let mut out = Filtered { text: Vec::with_capacity(bytes.len() + 1), ..Filtered::default() };
     let mut records = Records::new(bytes);
@@ -137,8 +137,8 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     Ok(out)
 }
 
-/// Copies a vertex of three numbers without exponents, alone on its line: nearly all are such.
-/// False, with nothing changed, when the line is anything else.
+/// Copies a vertex of three numbers without exponents, alone on its line: the usual case. Returns false,
+/// with nothing changed, for any other line.
 fn copy_plain_vertex(records: &mut Records<'_>, out: &mut Filtered) -> bool {
     const MOST_DIGITS: usize = 300;
     let rest = &records.bytes[records.at..];
@@ -174,8 +174,8 @@ fn copy_plain_vertex(records: &mut Records<'_>, out: &mut Filtered) -> bool {
     true
 }
 
-/// Copies a face whose line holds nothing but vertex numbers above zero, each perhaps with those of
-/// its texture coordinates and normal. False, with nothing changed, when the line is anything else.
+/// Copies a face whose line consists of positive vertex numbers, each optionally with numbers of texture
+/// coordinates and a normal. Returns false, with nothing changed, for any other line.
 fn copy_plain_face(
     records: &mut Records<'_>,
     out: &mut Filtered,
@@ -282,7 +282,7 @@ fn copy_vertex(records: &mut Records<'_>, out: &mut Filtered) -> Result<(), Loca
 }
 
 /// Whether a word is a decimal number that cannot overflow: digits, at most one point, and no
-/// exponent. False means that it has to be looked at more closely.
+/// exponent. False means that it needs a closer look.
 fn is_surely_finite(word: &[u8]) -> bool {
     const MOST_DIGITS: usize = 300;
     let unsigned = match word {
@@ -298,7 +298,7 @@ fn is_surely_finite(word: &[u8]) -> bool {
     n_digits > 0 && n_points <= 1 && n_digits + n_points == unsigned.len() && n_digits < MOST_DIGITS
 }
 
-/// The largest vertex number of all faces, and where it stands.
+/// The largest vertex number of all faces, and where it occurs.
 #[derive(Debug, Default)]
 struct Largest {
     index: u64,
@@ -415,7 +415,7 @@ impl Naming {
     }
 }
 
-/// Records that were skipped and deserve a word.
+/// Skipped records that are worth reporting.
 #[derive(Debug, Default)]
 struct Skipped {
     n_points: usize,
@@ -498,8 +498,8 @@ impl<'a> Records<'a> {
         Some(&self.bytes[start..self.at])
     }
 
-    /// The whole of a number like `1.#IND` or `-1.#INF`, as some programs write what is not finite,
-    /// when `word` is what stands before the `#` of one; then the number is passed.
+    /// All of a number like `1.#IND` or `-1.#INF`, as some programs write numbers that are not finite, if
+    /// `word` is the part before the `#`; the number is then consumed.
     fn rest_of_not_finite(&mut self, word: &[u8]) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         let is_spelled = [&b"#IND"[..], b"#INF", b"#QNAN", b"#SNAN"].iter().any(|spelling| {
@@ -515,7 +515,7 @@ impl<'a> Records<'a> {
         Some(&self.bytes[start..self.at])
     }
 
-    /// Where the next line begins if the backslash at `at` is the last thing on its own.
+    /// Where the next line begins if the backslash at `at` is the last character of its line.
     fn continuation(&self, at: usize) -> Option<usize> {
         let mut next = at + 1;
         while self.bytes.get(next).is_some_and(|&byte| is_blank(byte)) {

@@ -1,8 +1,8 @@
-//! PLY by ply-rs-bw: text, and binary of either byte order.
+//! PLY, read with ply-rs-bw: text, and binary of either byte order.
 //!
-//! Elements are read a batch at a time into small structs of our own and appended to flat arrays,
-//! so memory follows the data and not the counts of the header. Faces, edges, and colors of faces or
-//! else of vertices count; all other properties are ignored.
+//! Elements are read in batches into small structs and appended to flat arrays, so memory depends on the
+//! data, not on the counts in the header. Faces, edges, and the colors of faces or else of vertices are
+//! used; all other properties are ignored.
 
 use std::borrow::Cow;
 
@@ -57,7 +57,7 @@ impl Color {
     }
 }
 
-/// A position as it is read; coordinates that are not there stay zero.
+/// A position as it is read; missing coordinates stay zero.
 #[derive(Debug, Default)]
 struct Vertex {
     position: DVec3,
@@ -123,7 +123,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// The ends of an edge as the file numbers them; negative while they are not there.
+/// The ends of an edge as the file numbers them; negative while missing.
 #[derive(Debug)]
 struct Edge {
     ends: [i64; 2],
@@ -153,7 +153,7 @@ impl PropertyAccess for Edge {
     }
 }
 
-/// An element that is passed over.
+/// An element that is skipped.
 #[derive(Debug)]
 struct Skipped;
 
@@ -195,7 +195,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     Ok(draft)
 }
 
-/// Text whose lines end in CR alone, with LF in their place; all else as it is.
+/// Text whose lines end in CR alone, with LF instead; other text is unchanged.
 fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
     let mut words = Words::new(bytes, None);
     let is_text = [&b"ply"[..], b"format", b"ascii"].iter().all(|&w| words.next() == Some(w));
@@ -252,7 +252,7 @@ fn has_ends(edge: &ElementDef) -> bool {
     ["vertex1", "vertex2"].iter().all(|&name| edge.properties.contains_key(name))
 }
 
-/// Makes text be read as doubles: its digits need not have been single precision.
+/// Reads numbers in text as doubles: their digits need not be single precision.
 fn widen_floats(header: &mut Header) {
     let properties =
         header.elements.values_mut().flat_map(|element| element.properties.values_mut());
@@ -316,7 +316,7 @@ impl Batches<'_, '_> {
     }
 }
 
-/// A parser's message on one line and without what it quotes of the file, which may be long.
+/// A parser's message on one line, without its quotes from the file, which may be long.
 fn located(error: ParseError) -> Located {
     let text = error.to_string();
     let message = text.split_once('\n').map_or(text.as_str(), |(first, _)| first);
@@ -368,13 +368,13 @@ fn read_edges(
     Ok(())
 }
 
-/// The vertex that a file numbers so.
+/// The vertex with this number in the file.
 fn vertex_index(number: i64, n_vertices: usize) -> Result<u32, Fault> {
     let index = u32::try_from(number).ok().filter(|&index| (index as usize) < n_vertices);
     index.ok_or_else(|| Fault::MissingVertex { index: number.to_string(), vertices: n_vertices })
 }
 
-/// Gives each face the part of its own color, or of the mean color of its corners.
+/// Assigns each face to the part with its color, or with the mean color of its corners.
 fn color_faces(draft: &mut Draft, of_faces: &[Option<[u8; 3]>], of_vertices: &[[u8; 3]]) {
     let soup = &draft.soup;
     let has_vertex_colors = !of_vertices.is_empty() && of_vertices.len() == soup.positions.len();

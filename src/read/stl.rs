@@ -1,8 +1,8 @@
 //! STL, binary and text.
 //!
-//! Of the crates, stl_io takes a binary file whose header begins with "solid" for text (many
-//! programs write such headers) and refuses text in capitals; nom_stl reads single precision only
-//! and is no longer maintained.
+//! Of the existing crates, stl_io takes a binary file whose header begins with "solid" for text (many
+//! programs write such headers) and refuses text in capitals; nom_stl reads single precision only and is
+//! no longer maintained.
 //!
 //! ```text
 //!  binary: 80 bytes of anything │ n: u32 │ n × (normal, 3 corners: 12 × f32 │ 2 bytes)
@@ -26,18 +26,18 @@ use crate::model::mesh::{MeshError, MeshPart, PolygonSoup};
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// How much of a file is looked at to see whether it is text.
+/// How much of a file is examined to see whether it is text.
 const LOOKED_AT: usize = 1024;
 
-/// Whether bytes are surely STL: binary of exactly the right length, or text that begins as it must.
+/// Whether bytes are certainly STL: binary of exactly the right length, or text that begins correctly.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
     is_whole(bytes) || is_text(bytes) && begins_with_solid(bytes)
 }
 
 /// Reads STL of either kind.
 ///
-/// The length decides first: a file exactly as long as its count of triangles demands is binary, even
-/// when it begins with "solid".
+/// The length decides first: a file exactly as long as its count of triangles requires is binary, even if
+/// it begins with "solid".
 pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     let text = decode(bytes);
     if !is_whole(bytes) && is_text(&text) {
@@ -47,7 +47,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     }
 }
 
-/// Whether a file is exactly as long as its count of triangles demands, and has any.
+/// Whether a file is exactly as long as its count of triangles requires, and has any.
 fn is_whole(bytes: &[u8]) -> bool {
     triangle_count(bytes).is_some_and(|count| {
         count > 0 && HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64
@@ -67,7 +67,7 @@ fn is_text(bytes: &[u8]) -> bool {
         && start.iter().all(|byte| *byte >= b' ' || byte.is_ascii_whitespace() || *byte == 0x0B)
 }
 
-/// Whether the first line that is no comment begins with "solid".
+/// Whether the first line that is not a comment begins with "solid".
 fn begins_with_solid(bytes: &[u8]) -> bool {
     let mut words = Words::new(bytes, None);
     loop {
@@ -128,7 +128,7 @@ fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
     Ok(draft)
 }
 
-/// Gives each triangle the part of its color, if any has one.
+/// Assigns each triangle to the part with its color, if any has one.
 fn color_triangles(bytes: &[u8], triangles: &[[u8; TRIANGLE]], soup: &mut PolygonSoup) {
     let attribute = |triangle: &[u8; TRIANGLE]| {
         let [.., low, high] = *triangle;
@@ -197,7 +197,7 @@ fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
     Ok(draft)
 }
 
-/// Skips lines of comment at the start, and says so.
+/// Skips comment lines at the start, with a notice.
 fn skip_comments(words: &mut Words<'_>, draft: &mut Draft) {
     let mut first_line = None;
     loop {

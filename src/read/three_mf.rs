@@ -9,9 +9,9 @@
 //! and triangles. The archive is opened by `zip`, the XML by `roxmltree`, which refuses documents that
 //! define entities.
 //!
-//! Read are the core specification and what slicers use beyond it: objects in parts of their own
-//! (`p:path` of the production extension), base materials and color groups. Slices, beams, textures
-//! and supports painted on triangles are ignored.
+//! It reads the core specification and what slicers use beyond it: objects in separate parts (`p:path` of
+//! the production extension), base materials and color groups. Slices, beams, textures and supports painted
+//! on triangles are ignored.
 
 mod archive;
 mod part;
@@ -27,14 +27,14 @@ use crate::model::mesh::{MeshError, MeshPart};
 use archive::Archive;
 use part::{Component, ModelPart, Object, Triangle};
 
-/// Components within components at most.
+/// The deepest nesting of components.
 const DEEPEST: usize = 64;
 
-/// Triangles that components may make of each byte of the XML, and those that they always may.
+/// The most triangles that components may make for each byte of XML, and how many are always allowed.
 const TRIANGLES_PER_BYTE: u64 = 4;
 const FREE_TRIANGLES: u64 = 1 << 23;
 
-/// Objects that may be visited, however empty.
+/// The most objects that are visited, however empty.
 const MOST_VISITS: u64 = 1 << 20;
 
 /// Whether bytes are a ZIP archive with a 3MF model in it.
@@ -96,7 +96,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Adds what a build item or a component refers to; `path` holds the objects on the way there.
+    /// Adds the object that a build item or a component refers to; `path` lists the objects on the way there.
     fn add(
         &mut self,
         from: &str,
@@ -146,7 +146,7 @@ impl Builder<'_> {
         if n_corners.max(first + object.positions.len()) >= u32::MAX as usize {
             return Err(Fault::Mesh(MeshError::TooLarge));
         }
-        // The identity leaves coordinates as they are, bit for bit.
+        // The identity must keep coordinates bit for bit.
         soup.positions.extend(object.positions.iter().map(|&p| transform.transform_point3(p)));
         let is_mirrored = transform.matrix3.determinant() < 0.0;
         for triangle in &object.triangles {

@@ -22,7 +22,7 @@
 //! - Broken path data is cut short without a word, and nothing has a position for messages.
 //! - UTF-16 and other encodings are refused.
 //!
-//! So this module stands on the crates that `usvg` is made of: `roxmltree`, `simplecss`, `svgtypes`
+//! So this module uses the crates that `usvg` is made of: `roxmltree`, `simplecss`, `svgtypes`
 //! and `kurbo`.
 
 mod clip;
@@ -45,7 +45,7 @@ use reader::Reader;
 
 /// Elements inside each other, `<use>` counted too, beyond which a file is refused.
 const MAX_DEPTH: usize = 200;
-/// Bytes that entities of the document type may stand for in all.
+/// The most bytes that entities of the document type may expand to.
 const MAX_ENTITY_BYTES: usize = 1 << 28;
 /// Largest coordinate in millimeters: ten kilometers.
 const MAX_COORDINATE_MM: f64 = 1e7;

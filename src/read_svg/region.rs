@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Which side a point is on is decided by exact predicates; cuts are rounded once. Borders are
-//! [`BORDER_MM`] wide on paper, so that a line drawn along a border does not flicker.
+//! [`BORDER_MM`] wide on paper, so that a line along a border is not broken up.
 
 use std::rc::Rc;
 
@@ -18,15 +18,15 @@ use crate::plot::Polylines;
 
 /// Points this close to the border of an area are on it: half of the last digit that is written.
 const BORDER_MM: f64 = 0.0005;
-/// Most horizontal bands that the sides of a polygon are sorted into.
+/// The most horizontal bands that the sides of a polygon are sorted into.
 const MAX_BANDS: usize = 1024;
 
 /// What to do with ink on the border of an area, and which ink to keep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Keep {
-    /// What is inside or on the border.
+    /// Ink inside or on the border.
     Inside,
-    /// What is outside or on the border.
+    /// Ink outside or on the border.
     Outside,
 }
 
@@ -39,14 +39,14 @@ pub(super) struct ClipRegion {
 }
 
 impl ClipRegion {
-    /// Box around the region, those around it left aside. `None` if it is empty.
+    /// Box around the region, ignoring the ones around it. `None` if it is empty.
     pub(super) fn bounds(&self) -> Option<[DVec2; 2]> {
         let boxes = self.polygons.iter().map(|polygon| polygon.bounds);
         boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
     }
 
-    /// Hands the pieces of `line` to keep to `emit`, in order. A closed line is not torn apart at its
-    /// first point. O(points · sides nearby).
+    /// Calls `emit` with the pieces of `line` to keep, in order. A closed line is not split at its first
+    /// point. O(points · sides nearby).
     pub(super) fn cut(&self, line: &[DVec2], keep: Keep, mut emit: impl FnMut(&[DVec2])) {
         let (Some(&first), Some(&last)) = (line.first(), line.last()) else { return };
         if !self.is_near(line) {
@@ -87,7 +87,7 @@ impl ClipRegion {
                 let kept = is_kept(at(0.5 * (t[0] + t[1])));
                 if kept && is_open {
                     if let Some(piece) = pieces.last_mut() {
-                        // Cuts that changed nothing leave no point behind.
+                        // Cuts that change nothing add no point.
                         if t[0] > 0.0 {
                             piece.pop();
                         }
@@ -138,7 +138,7 @@ pub(super) enum FillRule {
     /// Where the rings wind around a point.
     #[default]
     NonZero,
-    /// Where an odd number of rings is around a point.
+    /// Where an odd number of rings surrounds a point.
     EvenOdd,
 }
 
@@ -253,8 +253,8 @@ impl Polygon {
         inside && self.within.iter().all(|region| region.contains(p, with_border))
     }
 
-    /// Adds where the way from `from` to `to` crosses the border, as shares of the way; also some
-    /// where it does not.
+    /// Adds where the segment from `from` to `to` crosses the border, as fractions of the segment; also some
+    /// points where it does not.
     fn add_cuts(&self, from: DVec2, to: DVec2, cuts: &mut Vec<f64>) {
         self.within.iter().for_each(|region| region.add_cuts(from, to, cuts));
         let along = to - from;

@@ -1,5 +1,5 @@
-//! Presentation: the few properties that decide what a pen draws, from attributes, style sheets
-//! and `style`, in that order of strength.
+//! Presentation: the few properties that decide what a pen draws, from attributes, style sheets and
+//! `style`, in ascending order of precedence.
 
 use std::str::FromStr;
 
@@ -36,7 +36,7 @@ pub(super) struct Style {
 struct Ink {
     /// `None` for no paint.
     color: Option<String>,
-    /// Of the paint.
+    /// Opacity of the paint.
     alpha: f64,
     /// `stroke-opacity` or `fill-opacity`.
     opacity: f64,
@@ -55,7 +55,7 @@ impl Ink {
             Ok(Paint::CurrentColor) => (Some(current.to_owned()), 1.0),
             // Gradients and patterns.
             Ok(_) => (Some("#000000".to_owned()), 1.0),
-            // As everywhere in CSS, what cannot be read has no effect.
+            // As everywhere in CSS, an invalid value has no effect.
             Err(_) => return,
         };
     }
@@ -108,7 +108,7 @@ impl Style {
         self.visible && (self.has_stroke() || self.fill.shows())
     }
 
-    /// Whether the shape counts where it clips others, for which paint does not matter.
+    /// Whether the shape counts when it clips others, where paint does not matter.
     pub(super) fn is_visible(&self) -> bool {
         self.visible
     }
@@ -282,7 +282,7 @@ impl Element for XmlNode<'_, '_> {
     }
 }
 
-/// A length in user units, `None` for `auto`; an error if it is no finite length.
+/// A length in user units, `None` for `auto`; an error if it is not a finite length.
 pub(super) fn parse_length(text: &str, of: f64) -> Result<Option<f64>, ()> {
     if text.trim() == "auto" {
         return Ok(None);

@@ -1,10 +1,10 @@
-//! Appel: the number of layers is carried along edges and changes only at cutting edges.
+//! Appel: quantitative invisibility is carried along edges and changes only at cutting edges.
 //!
 //! A. Appel, "The notion of quantitative invisibility and the machine rendering of solids", ACM
 //! National Conference 1967. The quantitative invisibility of a point is the number of triangles
-//! that cover it. Along a drawn edge it changes only where the edge passes behind a nearer
-//! *cutting edge* (a side of triangles of which more lie on the one side of its image than on the
-//! other) or pierces a triangle:
+//! that cover it. Along a drawn edge it changes only where the edge pierces a triangle or passes behind
+//! a nearer *cutting edge*, a side that has more of its triangles on one side of its image than on the
+//! other:
 //!
 //! ```text
 //!    qi 0    ┆   qi 2  ┆   qi 1  ┆   qi 0
@@ -12,37 +12,36 @@
 //!   A        silhouette    boundary        B
 //! ```
 //!
-//! So drawn edges are tested against cutting edges, of which there are few, not against all
-//! triangles. The number that an edge begins with is carried over from the edges that meet it, as
-//! follows. Let `qi₀(v)` be the
-//! number of triangles that cover a vertex without touching it. A vertex is *regular* when its image
-//! lies on no nearer cutting edge's and the vertex itself on no triangle but those it is a corner
-//! of. Then `qi₀(v)` holds all around it, and an edge leaves it with `qi₀(v)` plus the triangles
-//! around `v` that cover the edge just beyond. Any edge between two regular vertices therefore tells
-//! the difference between their numbers; one sight line gives a whole connected set its own. Only an
-//! edge between two irregular vertices needs a sight line for itself.
+//! So drawn edges are tested against the few cutting edges, not against all triangles. The `qi` at the
+//! start of an edge is carried over from the edges that meet it, as follows. Let `qi₀(v)` be the number
+//! of triangles that cover a vertex without touching it. A vertex is *regular* if its image is not on
+//! that of a nearer cutting edge, and the vertex itself only on triangles it is a corner of. Then `qi₀(v)`
+//! is the same all around it, and an edge leaves it with `qi₀(v)` plus the triangles around `v` that cover
+//! the edge just beyond. So any edge between two regular vertices gives the difference of their `qi₀`, and
+//! one sight line determines a whole connected set. Only an edge between two irregular vertices needs its
+//! own sight line.
 //!
 //! Differs from the paper in:
 //! * all triangles count, front and back, so that meshes may be open, non-manifold or badly wound;
-//! * each of an edge's two sides has its own number (module `trace`), and a side is a path that meets
-//!   no vertex and runs along no edge, so that coincidences in the image are no special case;
-//! * nothing is rounded: crossing, depth and order are signs of [`crate::predicates`], and the two
-//!   ways by which a number can reach a vertex must give the same; on a closed surface some sight
-//!   lines must meet an even number of triangles as well (module `parity`). A difference would be a
-//!   fault of the program; it is counted, and [`roberts`] does the edges that it concerns.
+//! * each of an edge's two sides has its own `qi` (module `trace`). A side is a path that meets no vertex
+//!   and runs along no edge, so coincidences in the image need no special cases;
+//! * nothing is rounded: crossings, depth and order are signs of [`crate::predicates`]. All paths to a
+//!   vertex must give it the same `qi`, and on a closed surface some sight lines must meet an even number
+//!   of triangles (module `parity`). A contradiction would be a defect of the program; it is counted, and
+//!   [`roberts`] takes the edges concerned.
 //!
-//! Lines of intersection go to [`roberts`]: their ends lie on triangles, so that each would need a
-//! sight line for itself.
+//! Lines of intersection go to [`roberts`]: their ends are on triangles, so each would need its own sight
+//! line.
 //!
-//! Triangles that the near plane cuts are asked one by one, as Roberts does. In near contact (see
-//! [`VisibilityOptions::contact_tolerance`]) numbers are carried as if there were no tolerance, and what the
-//! tolerance says does not cover is taken away from the edge at last.
+//! Triangles that the near plane cuts are tested one by one, as in Roberts's algorithm. In near contact
+//! (see [`VisibilityOptions::contact_tolerance`]), `qi` is carried as if there were no tolerance, and what
+//! does not cover within the tolerance is subtracted at the end.
 //!
 //! # How the work grows
 //!
-//! All edges of a displaced sphere, which is open at the poles, in perspective. Cutting edges tested
-//! grow like the contours; triangles tested are those near in space of whose plane the ends of the
-//! edge do not certainly lie on one side.
+//! All edges of a displaced sphere, open at the poles, in perspective. The number of cutting edges tested
+//! grows like the contours; triangles are tested if they are near in space and the ends of the edge are
+//! not certainly on one side of their plane.
 //!
 //! | triangles | edges | cutting edges tested | triangles tested | sight lines | Roberts' triangles |
 //! |---|---|---|---|---|---|
@@ -447,7 +446,7 @@ impl SpanBuilder<'_, '_> {
     }
 }
 
-/// The same spans with those of some segments done anew.
+/// The same spans, with those of some segments computed again.
 fn replaced_by_roberts(
     view: &ViewedScene,
     options: &VisibilityOptions,

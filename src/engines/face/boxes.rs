@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-/// Cells along each side, at most.
+/// The most cells along each side.
 const MOST_CELLS: usize = 256;
 
-/// Boxes that reach more cells than so many rows of the grid have are listed apart: they are large in
-/// both directions. Long thin ones are not.
+/// Boxes that reach more cells than this many rows of the grid have are listed separately: they are large
+/// in both directions. Long thin ones are not.
 const MOST_ROWS: usize = 4;
 
 /// Boxes by the cells of the image that they reach.
@@ -17,7 +17,7 @@ pub(crate) struct BoxIndex {
     cell: DVec2,
     n: usize,
     cells: Vec<Vec<u32>>,
-    /// Boxes that are in no cell, since they reach too many.
+    /// Boxes that are listed in no cell, since they reach too many.
     large: Vec<u32>,
     boxes: Vec<(DVec2, DVec2)>,
 }
@@ -64,7 +64,7 @@ impl BoxIndex {
         })
     }
 
-    /// The boxes that have more than a border in common with a box, in order.
+    /// The boxes that share more than a border with a box, in order.
     pub(crate) fn overlapping(&self, bounds: (DVec2, DVec2), found: &mut Vec<u32>) {
         found.clear();
         let overlaps = |&other: &u32| {

@@ -1,11 +1,11 @@
 //! The painter with a tree of planes: built once, walked for every view.
 //!
 //! ```text
-//!           plane a                    a            each node parts what is left by a plane and
-//!     ╲        │                      ╱ ╲           keeps the fragments that lie in it; seen from
+//!           plane a                    a            each node divides what is left by a plane and
+//!     ╲        │                      ╱ ╲           keeps the fragments in that plane; seen from
 //!      ╲ b     │    c              b     c          the + side of a:
 //!       ╲      │   ╱              ╱ ╲   ╱ ╲
-//!        ╲   − │ + ╱                                all behind a, what lies in a, all before a
+//!        ╲   − │ + ╱                                all behind a, all in a, all in front of a
 //! ```
 //!
 //! What lies on the far side of a plane cannot hide what lies on the near side, so one walk in order
@@ -13,21 +13,22 @@
 //!
 //! Source: H. Fuchs, Z. Kedem, B. Naylor, "On visible surface generation by a priori tree structures"
 //! (1980); lecture notes on visibility (Slovak), section 3.2, and those on the painter's algorithm
-//! with a BSP tree. Their rule for the choice of a face maximises a sum in which split faces count
-//! for it; here they count against it. For large sets planes across an axis are candidates too, since
-//! faces alone make a list of n nodes, and n² tests, out of any convex body.
+//! with a BSP tree. Their rule for choosing a face maximizes a sum in which split faces count in its
+//! favor; here they count against it. For large sets, planes across an axis are candidates too, since
+//! faces alone would turn any convex body into a list of n nodes, with n² tests.
 //!
-//! Good for: many views of one model, such as a turntable. The walk costs one exact test a node.
-//! Cannot: spare the splits that a view does not need; a scene of large faces that all cross, whose
-//! fragments number n² or more: 300 triangles at random in a cube make 104 000, in 2.5 s, and a
-//! thousand are refused (see [`MAX_PIERCINGS`]).
+//! Good for: many views of one model, such as a turntable. The walk costs one exact test per node.
+//! Cannot: avoid splits that a view does not need, or handle large faces that all cross: they make n²
+//! fragments or more. 300 random triangles in a cube make 104 000, in 2.5 s; a thousand are refused
+//! (see [`MAX_PIERCINGS`]).
 //!
 //! Coherence: picture sequence coherence (one tree serves all views) and object coherence (what lies on
 //! one side of a plane is ordered as a whole).
 //!
 //! # Size and time
 //!
-//! Two threads; the walk paints all fragments of one view. Both grow about as the triangles do:
+//! Two threads; the walk paints all fragments of one view. Both times are about proportional to the
+//! number of triangles:
 //!
 //! | model | triangles | nodes | fragments | built | walked |
 //! |---|---|---|---|---|---|
@@ -63,7 +64,7 @@ use glam::DVec3;
 /// No node.
 const NONE: u32 = u32::MAX;
 
-/// A plane that parts what is left of the scene.
+/// A plane that divides what is left of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct PlaneNode {
     plane: PlaneName,
@@ -126,7 +127,7 @@ impl BspTree {
     /// same for any number of threads.
     ///
     /// # Errors
-    /// When the fragments would be too many, by a guess before anything is built
+    /// There would be too many fragments, by an estimate before anything is built
     /// ([`MAX_PIERCINGS`]) or in fact ([`MAX_FRAGMENTS`]).
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
         check_piercings(scene)?;

@@ -1,46 +1,45 @@
-//! The painter with a sorted list: Newell, Newell and Sancha's depth sort, for one view.
+//! The painter's algorithm with a sorted list: Newell, Newell and Sancha's depth sort, for one view.
 //!
 //! ```text
 //!    eye ◁    Q ╲   P            sorted by the farthest point, P comes first. It may be painted if
-//!              ╲ ╲  │            it hides no part of any Q that is not painted yet; if it does, Q is
-//!               ╲ ╲ │            moved before it and marked, and looked at in its turn. A marked
-//!                  ╲│            one that is to be moved again closes a cycle: one is split
+//!              ╲ ╲  │            it hides no part of any Q not painted yet; if it does hide one, Q is
+//!               ╲ ╲ │            moved before it, marked, and tested in its turn. Moving a marked one
+//!                  ╲│            again would close a cycle, so one of them is split
 //! ```
 //!
-//! For each pair tests in rising cost are made, and the first that holds settles it: P hides nothing
-//! of Q when
+//! Each pair goes through tests of rising cost until one passes. P hides nothing of Q when
 //!
-//! 1. the depth of P begins where that of Q ends or later,
-//! 2. the boxes of their images are apart in x, or in y,
+//! 1. the nearest point of P is no nearer than the farthest point of Q,
+//! 2. the boxes of their images are disjoint in x or in y,
 //! 3. P lies behind the plane of Q,
 //! 4. Q lies in front of the plane of P,
-//! 5. their images do not overlap: a side of one has the other beyond it,
-//! 6. where they do overlap, at each corner of the common part, Q is the nearer one.
+//! 5. their images do not overlap: a side of one separates them,
+//! 6. where they do overlap, Q is nearer at each corner of the common part.
 //!
-//! The first two are decided on rounded numbers with bounds that are on the safe side, the others
-//! exactly, so no order is ever wrong. The last is not in the paper: there pairs that fail the others
-//! are split, though few of them pierce each other. In one plane the lowest face is the nearest.
+//! The first two use rounded numbers with safe bounds, the others exact predicates, so the order is
+//! never wrong. The last test is not in the paper, which splits pairs that fail the others although
+//! few of them pierce each other. Of faces in one plane, the one with the lowest number is nearest.
 //!
 //! # Why it ends
 //!
-//! In a cycle some member crosses the plane of another, or planes alone would order all of them; it
-//! is split there, and its parts never cross that plane again. So there are finitely many splits;
-//! in fact they are few; [`MAX_SPLITS`] and [`MAX_TESTS`] end what would take too long.
+//! In a cycle some member crosses the plane of another, since otherwise the planes would order them
+//! all. It is split there, and its parts never cross that plane again. So the number of splits is
+//! finite, and small in practice; [`MAX_SPLITS`] and [`MAX_TESTS`] stop what would take too long.
 //!
 //! Source: M. Newell, R. Newell, T. Sancha, "A solution to the hidden surface problem" (1972); lecture
 //! notes on visibility (Slovak), section 3.1, and the tests T1 to T4 of those on depth sort; the same
 //! tests are 1, 2a to 2d in the German ones.
 //!
 //! Good for: single views of large models, with hardly any splits: a mesh of 70 000 triangles takes
-//! seconds. A tree of image boxes offers the pairs, so the cost is about n log n plus the pairs whose
-//! boxes overlap. Cannot: keep anything for the next view. Many large faces behind each other make n²
-//! pairs; that is estimated first, see [`MAX_PAIRS`].
+//! seconds. A tree of image boxes finds the pairs, so the cost is about n log n plus the number of pairs
+//! whose boxes overlap. Cannot: reuse anything for the next view. Many large faces behind each other
+//! make n² pairs; their number is estimated first, see [`MAX_PAIRS`].
 //!
 //! Coherence: object coherence (boxes stand for faces).
 //!
 //! # Time
 //!
-//! Two threads, one of which sorts:
+//! Two threads, of which one sorts:
 //!
 //! | model | triangles | splits | tests of pairs | time |
 //! |---|---|---|---|---|
@@ -68,18 +67,18 @@ use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
-/// Splits for each face, at most, above a few thousand; usual models need far below one.
+/// The most splits for each face, beyond a few thousand in all; usual models need far less than one.
 pub const MAX_SPLITS: u64 = 64;
 
-/// Pairs of triangles that pierce each other, for each triangle, above which nothing is begun: as many
-/// splits, each of which makes new pairs, would take minutes.
+/// The most pairs of triangles that pierce each other, for each triangle. More are refused at once: that
+/// many splits, each of which makes new pairs, would take minutes.
 pub const MAX_PIERCINGS: u64 = 8;
 
-/// Tests of pairs, at most: about a minute.
+/// The most tests of pairs: about a minute's worth.
 pub const MAX_TESTS: u64 = 200_000_000;
 
-/// Pairs of faces with overlapping boxes, at most: a minute or two. An estimate from a sample of faces
-/// is compared with it before anything else.
+/// The most pairs of faces with overlapping boxes: a minute or two. Their number is estimated from a
+/// sample of faces first.
 pub const MAX_PAIRS: u64 = 200_000_000;
 
 /// Faces in the sample for the estimate.
@@ -88,16 +87,16 @@ const N_SAMPLES: usize = 1024;
 /// Why a scene is not sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum DepthSortError {
-    /// Told before starting.
+    /// Found before sorting starts.
     #[error("about {0} pairs of faces overlap in the image and in depth, which would take minutes")]
     TooManyPairs(u64),
-    /// Told before starting.
+    /// Found before sorting starts.
     #[error("about {0} pairs of triangles pierce each other, too many to sort")]
     TooManyPiercings(u64),
-    /// Told while sorting.
+    /// Found while sorting.
     #[error("the faces had to be split {0} times and are still not in order")]
     TooManySplits(u64),
-    /// Told while sorting.
+    /// Found while sorting.
     #[error("the faces were compared {0} times and are still not in order")]
     TooManyTests(u64),
 }
@@ -107,17 +106,17 @@ pub enum DepthSortError {
 pub struct DepthSortCounts {
     /// Pieces that are painted.
     pub fragments: u64,
-    /// Times that a fragment was cut in two, not counting cuts at the near plane.
+    /// How often a fragment was cut in two, not counting cuts at the near plane.
     pub splits: u64,
-    /// Times that a pair came up.
+    /// How often a pair was tested.
     pub tests: u64,
-    /// Times that a fragment was moved before another.
+    /// How often a fragment was moved before another.
     pub moves: u64,
-    /// Which test settled it.
+    /// Which test passed.
     pub settled: Settled,
 }
 
-/// A fragment with what is asked of it most often. Boxes and depths are a little too large.
+/// A fragment with the data used most. Boxes and depth ranges are slightly too large.
 #[derive(Debug, Clone)]
 struct SortedFragment {
     fragment: Fragment,
@@ -128,7 +127,7 @@ struct SortedFragment {
     high: DVec2,
     near: f64,
     far: f64,
-    /// The number of the item, at the start, that this one is a part of.
+    /// The number of the original item that this one is part of.
     origin: u32,
 }
 
@@ -159,7 +158,7 @@ impl SortedFragment {
         }
     }
 
-    /// The first tests: whether another may hide a part of this one, or this one of that.
+    /// The first tests: whether another may hide part of this one, or this one part of the other.
     #[inline]
     fn may_meet(&self, other: &Self) -> bool {
         self.low.cmplt(other.high).all() && other.low.cmplt(self.high).all()
@@ -186,7 +185,7 @@ pub fn solve(
     Ok((painting, counts))
 }
 
-/// The fragments of one view from far to near, cut at the near plane, without those edge-on.
+/// The fragments of one view from far to near, clipped at the near plane, without edge-on ones.
 ///
 /// # Errors
 /// See [`enum@DepthSortError`].

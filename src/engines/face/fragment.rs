@@ -3,25 +3,25 @@
 //! ```text
 //!            ● q                    a fragment keeps its triangle, so its face;
 //!           ╱ ╲                     each corner its exact place (see `predicates::Corner`);
-//!     edge ╱   ╲ diagonal           each side whether it is what is left of a line of the scene
-//!         ╱┄┄┄┄┄╲  cut              (edge), or was made by triangulation or a cut: those are
+//!     edge ╱   ╲ diagonal           each side whether it is part of a line of the scene (edge)
+//!         ╱┄┄┄┄┄╲  cut              or was made by triangulation or by a cut; the latter are
 //!      p ●───────● r                never drawn
 //!          edge
 //! ```
 //!
-//! Cutting keeps a fragment strictly convex: no corner lies on the line through its neighbors, and
-//! a cut that only touches is none.
+//! Cutting keeps a fragment strictly convex: no corner is on the line through its neighbors, and a
+//! plane that only touches does not cut.
 
 use super::FragmentCounts;
 use super::painting::{NO_LINE, Painting};
 use crate::camera::{Camera, Frame, ImagePoint, Projection};
 use crate::model::scene::Scene;
-use crate::predicates::{Corner, Estimate, Place, Plane, PlaneName, Planes, Sign};
+use crate::predicates::{Corner, CornerPlace, Estimate, Plane, PlaneName, Planes, Sign};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
-/// What a side of a fragment lies on, besides the plane of its triangle.
+/// What, with the plane of its triangle, defines the line of a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Border {
     /// The line through two vertices.
@@ -35,9 +35,9 @@ pub enum Border {
 pub struct FragmentSide {
     /// Where the side begins.
     pub corner: Corner,
-    /// What it lies on.
+    /// What defines its line.
     pub border: Border,
-    /// The line of the scene that it is a part of, or [`NO_LINE`].
+    /// The line of the scene that it is part of, or [`NO_LINE`].
     pub line: u32,
 }
 
@@ -48,12 +48,12 @@ pub struct Fragment {
     sides: Vec<FragmentSide>,
 }
 
-/// How a fragment stands to a plane.
+/// Where a fragment is relative to a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Position {
-    /// On its positive side; corners may lie on the plane.
+    /// On its positive side; corners may be on the plane.
     Front,
-    /// On its negative side; corners may lie on the plane.
+    /// On its negative side; corners may be on the plane.
     Back,
     /// In the plane.
     Within,
@@ -104,7 +104,7 @@ impl Fragment {
         self.sides.iter().map(|side| &side.corner)
     }
 
-    /// How it stands to a plane, exactly. O(corners).
+    /// Where it is relative to a plane, exactly. O(corners).
     #[inline]
     pub fn position(&self, planes: &Planes, plane: &Plane) -> Position {
         if plane.name() == PlaneName::Triangle(self.triangle) {
@@ -126,13 +126,13 @@ impl Fragment {
         }
     }
 
-    /// The parts on the positive and the negative side of a plane that it lies across.
+    /// The parts on the positive and the negative side of a plane that crosses it.
     ///
     /// ```text
     ///      from ●──────●           + ─► −: the cut begins the side of the positive part,
     ///          ╱    +   ╲              the rest of this side that of the negative
     ///   ┄┄┄┄┄┄●┄┄┄┄┄┄┄┄┄┄●┄┄┄ plane
-    ///          ╲    −   ╱          − ─► +: the other way round
+    ///          ╲    −   ╱          − ─► +: the other way around
     ///           ●──────●
     /// ```
     pub fn split(&self, planes: &Planes, plane: &Plane) -> (Self, Self) {
@@ -161,9 +161,9 @@ impl Fragment {
             }
             if from.times(to) == Sign::Negative {
                 let place = match side.border {
-                    Border::Edge(ends) => Place::OnEdge(ends, name),
+                    Border::Edge(ends) => CornerPlace::OnEdge(ends, name),
                     Border::Cut(other) => {
-                        Place::InFace([PlaneName::Triangle(self.triangle), other, name])
+                        CornerPlace::InFace([PlaneName::Triangle(self.triangle), other, name])
                     }
                 };
                 let ends = [&side.corner, &self.sides[j].corner];
@@ -182,8 +182,8 @@ impl Fragment {
         (part(front), part(back))
     }
 
-    /// The parts on the positive and the negative side of a plane, where there are any. A fragment
-    /// in the plane counts as on the positive side.
+    /// The parts on the positive and the negative side of a plane, if any. A fragment in the plane
+    /// counts as being on the positive side.
     pub fn parted(
         self,
         planes: &Planes,
@@ -202,11 +202,11 @@ impl Fragment {
         }
     }
 
-    /// What the near plane keeps of it; all when there is none.
+    /// The part beyond the near plane; all of it when there is no near plane.
     pub fn kept(&self, planes: &Planes, near: Option<&Plane>) -> Option<Cow<'_, Self>> {
         let Some(near) = near else { return Some(Cow::Borrowed(self)) };
         match self.position(planes, near) {
-            // What lies in the near plane is kept.
+            // Fragments in the near plane are kept.
             Position::Front | Position::Within => Some(Cow::Borrowed(self)),
             Position::Back => None,
             Position::Across => Some(Cow::Owned(self.split(planes, near).0)),
@@ -225,18 +225,18 @@ impl Fragment {
     }
 }
 
-/// A box around fragments, roundings included.
+/// A box around fragments, with room for rounding.
 pub(super) fn bounds(fragments: &[Fragment]) -> (DVec3, DVec3) {
     let corners = || fragments.iter().flat_map(Fragment::corners);
     let low = corners().fold(DVec3::INFINITY, |low, c| low.min(c.point - c.error));
     (low, corners().fold(DVec3::NEG_INFINITY, |high, c| high.max(c.point + c.error)))
 }
 
-/// More than the roundings on the way to the image, as a part of the sizes that go in: one of the
-/// difference, three of each product, and those of the directions, some 8 units of 2⁻⁵³ together.
+/// A bound on the rounding errors of a projection, relative to the size of its operands: one for the
+/// difference, three for each product, and those of the directions, about 8 units of 2⁻⁵³ in all.
 const IMAGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// Brings fragments onto paper.
+/// Projects fragments.
 #[derive(Debug, Clone, Copy)]
 pub struct Easel<'a> {
     scene: &'a Scene,
@@ -255,8 +255,8 @@ impl<'a> Easel<'a> {
         ImagePoint::new(corner.point - self.camera.eye(), self.camera, &self.frame)
     }
 
-    /// The image of a point that is off by up to `error`, and a bound of the image's own error;
-    /// infinite for a point that may not be in front of the eye.
+    /// The image of a point known to within `error`, and a bound on the image's error; infinite for a
+    /// point that may not be in front of the eye.
     pub(super) fn image_within(&self, point: DVec3, error: f64) -> (DVec2, f64) {
         let d = point - self.camera.eye();
         let image = ImagePoint::new(d, self.camera, &self.frame);
@@ -271,7 +271,7 @@ impl<'a> Easel<'a> {
         }
     }
 
-    /// The distance of a corner along the direction of view, and a bound of its error.
+    /// The distance of a corner along the direction of view, and a bound on its error.
     pub(super) fn depth_within(&self, corner: &Corner) -> (f64, f64) {
         let d = corner.point - self.camera.eye();
         let error = 2.0 * corner.error + IMAGE_ERROR * (d.length() + corner.point.length());
@@ -296,7 +296,7 @@ impl<'a> Easel<'a> {
                 painting.push(self.face(fragment), [ring]);
             }
             Sign::Negative => {
-                // Backwards, a corner begins the side that ended there.
+                // In reverse order, a corner begins the side that ended there.
                 let ring = (0..n).rev().map(|i| (image(&sides[i]), sides[(i + n - 1) % n].line));
                 painting.push(self.face(fragment), [ring]);
             }

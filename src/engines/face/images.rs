@@ -1,13 +1,13 @@
-//! What engines that work in the image start from: each face's image, flat, with its depth.
+//! The input of engines that work in the image: the image of each face, flat, with its depth.
 //!
 //! ```text
 //!  face ─► triangles ─► those in one plane ─► near plane ─► Flat: region on the grid,
 //!                       together, exactly                   plane of depth, vertices
 //! ```
 //!
-//! A face that lies in one plane exactly is one [`Flat`]; a bent one is as many as it has triangles.
-//! Which of two flats is in front is decided exactly on the vertices of the scene where the plane of
-//! one does not cut the other, and by depths in the image where it does.
+//! An exactly planar face is one [`Flat`]; a bent face is one for each of its triangles. Which of two
+//! flats is in front is decided exactly, from the vertices of the scene, if the plane of one does not
+//! cut the other, and otherwise by depths in the image.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -19,10 +19,10 @@ use crate::engines::image::raster::Corners;
 use crate::model::scene::Scene;
 use crate::predicates::{Sight, Sign, Solid};
 
-/// How near the points of a plane are, evenly over the image: `at_origin + slope · point`.
+/// How near the points of a plane are, a linear function of the image: `at_origin + slope · point`.
 ///
-/// *Nearness* is 1 / w in perspective, w being the distance along the direction of view, and minus
-/// that distance in orthographic projection. Larger is nearer.
+/// *Nearness* is 1 / w in perspective, where w is the distance along the direction of view, and −w in
+/// orthographic projection. Larger is nearer.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Nearness {
     /// At the image's origin.
@@ -53,12 +53,12 @@ impl Nearness {
     }
 }
 
-/// Where one flat is as seen from another.
+/// The depth order of two flats, from the first one's side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DepthOrder {
-    /// Farther, wherever both are seen.
+    /// The other is farther wherever both overlap.
     Behind,
-    /// Nearer, wherever both are seen.
+    /// The other is nearer wherever both overlap.
     InFront,
     /// The plane of each cuts the other: nearer in one part and farther in the other.
     Crossing,
@@ -75,7 +75,7 @@ pub struct Flat {
     turn: Sign,
     /// The vertices, some of them twice.
     vertices: Vec<u32>,
-    /// What of the image it covers.
+    /// The part of the image that it covers.
     pub region: Region,
     /// How near it is.
     pub nearness: Nearness,
@@ -97,7 +97,7 @@ pub struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    /// O(corners), in parallel. Nothing in the image gives no flats.
+    /// O(corners), in parallel. Without any image there are no flats.
     pub fn new(scene: &'a Scene, camera: &Camera) -> Self {
         let corners = Corners::new(scene, camera);
         let positions = scene.mesh().positions();
@@ -153,8 +153,8 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// On which side of `this` plane all vertices of `other` are: positive is behind, as the eye sees
-    /// it. `None` when they are on both.
+    /// The side of `this` flat's plane that all vertices of `other` are on: positive is behind, as the
+    /// eye sees it. `None` when they are on both sides.
     fn side(&self, this: usize, other: usize) -> Option<Sign> {
         let Flat { triangle, turn, .. } = self.flats[this];
         let mut side = Sign::Zero;
@@ -176,10 +176,10 @@ impl<'a> Images<'a> {
         Nearness { at_origin: a.at_origin - b.at_origin, slope: a.slope - b.slope }
     }
 
-    /// Where in the image flat `other` is nearer than `this`, as far as both reach: a half of the
-    /// plane. For two flats the border is always the same.
+    /// The half of the image plane where flat `other` is nearer than `this`. For two flats the border is
+    /// always the same.
     ///
-    /// `None` when rounding hides the line: then the one that is nearer in the middle is so all over.
+    /// `None` when rounding hides the line: then the one nearer in the middle is nearer everywhere.
     pub fn where_nearer(&self, other: usize, this: usize) -> Option<Region> {
         let line = self.difference(other, this);
         let length = line.slope.length();
@@ -225,7 +225,7 @@ fn groups(scene: &Scene, solid: &Solid) -> Vec<std::ops::Range<u32>> {
 /// Whether the triangles of a face lie in one plane, exactly.
 fn is_flat(triangles: &[[u32; 3]], solid: &Solid) -> bool {
     let vertices = triangles.as_flattened();
-    // Of a triangle without area every vertex is in the plane, and it proves nothing.
+    // All vertices are in the plane of a triangle without area, which proves nothing.
     let spans = |triangle: &&[u32; 3]| {
         let [a, b, c] = triangle.map(|vertex| solid.positions()[vertex as usize]);
         (b - a).cross(c - a) != DVec3::ZERO
@@ -235,8 +235,8 @@ fn is_flat(triangles: &[[u32; 3]], solid: &Solid) -> bool {
     })
 }
 
-/// The image of a triangle, cut at the near plane, counter-clockwise, with the edges of the mesh that
-/// its sides lie on.
+/// The image of a triangle, clipped at the near plane, counter-clockwise, with the mesh edges that its
+/// sides are on.
 fn rings(scene: &Scene, corners: &Corners, number: u32, grid: &SnapGrid) -> Vec<[(DVec2, u32); 3]> {
     let [a, b, c] = scene.triangles()[number as usize];
     let line = |a, b| scene.topology().find_edge(a, b).unwrap_or(NO_LINE);
@@ -251,7 +251,7 @@ fn rings(scene: &Scene, corners: &Corners, number: u32, grid: &SnapGrid) -> Vec<
             if super::region::turn(at[0], at[1], at[2]) >= 0 {
                 [0, 1, 2].map(|k| (at[k], lines[k]))
             } else {
-                // Backwards, the side that begins at a corner is the one that ended there.
+                // In reverse order, the side that begins at a corner is the one that ended there.
                 [(at[0], lines[2]), (at[2], lines[1]), (at[1], lines[0])]
             }
         })

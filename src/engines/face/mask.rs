@@ -1,17 +1,17 @@
-//! What is drawn already: a mask of the image that lets a walk from near to far leave out what is hidden.
+//! The part of the image drawn already: with this mask, a walk from near to far leaves out what is hidden.
 //!
 //! ```text
-//!   near ──────────────────────────► far      a fragment whose image lies on covered squares is
-//!    ▓▓▓▓     covered by what came            hidden, and left out; so is all that a box holds
-//!    ▓▓▓▓  ┌┄┄┐ before                        whose image does; what is shown covers its squares
+//!   near ──────────────────────────► far      a fragment whose image is in covered squares is
+//!    ▓▓▓▓     covered by nearer               hidden and left out; so is everything in a box whose
+//!    ▓▓▓▓  ┌┄┄┐ fragments                     image is; what is shown covers its squares
 //!    ▓▓▓▓  └┄┄┘
 //! ```
 //!
-//! A fragment covers as soon as it is shown, a whole face as soon as its last fragment is, so large
-//! faces hide much; faces smaller than the smallest squares cover those together where they meet
+//! A fragment covers squares as soon as it is shown, and a face as soon as its last fragment is, so
+//! large faces hide much. Faces smaller than the smallest squares cover squares together where they meet
 //! (`seams.rs`), so a fine mesh hides its own back.
 //!
-//! What is left out is surely hidden; what is left may be.
+//! What is left out is certainly hidden; what remains may be hidden.
 //!
 //! Source: lecture notes on visibility (Slovak), end of section 3.2.
 
@@ -35,7 +35,7 @@ const MAX_COVERING_CORNERS: usize = 16;
 /// What a view left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct MaskCounts {
-    /// Boxes of a tree that were found hidden, not counting those in them.
+    /// Boxes of a tree that were found hidden, not counting boxes inside them.
     #[serde(skip)]
     pub hidden_boxes: u64,
     /// Fragments that were found hidden, those in hidden boxes included.
@@ -44,7 +44,7 @@ pub struct MaskCounts {
     pub painted: u64,
 }
 
-/// How many fragments faces and triangles are cut into.
+/// How many fragments faces and triangles were cut into.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FragmentsOf {
     faces: Vec<u32>,
@@ -64,7 +64,7 @@ impl FragmentsOf {
     }
 }
 
-/// The mask of one view, and what is shown of the fragments that came so far.
+/// The mask of one view, and the fragments shown so far.
 pub(super) struct Mask<'a> {
     view: View<'a>,
     of: &'a FragmentsOf,
@@ -76,7 +76,7 @@ pub(super) struct Mask<'a> {
 }
 
 impl<'a> Mask<'a> {
-    /// Nothing has come of `n_fragments`. `planes` must be those of the scene with the camera.
+    /// None of `n_fragments` shown yet. `planes` must be those of the scene with the camera.
     pub(super) fn new(
         scene: &'a Scene,
         camera: &'a Camera,
@@ -96,15 +96,15 @@ impl<'a> Mask<'a> {
         Self { view, of, missing: of.clone(), occupancy, seams, shown: Vec::new(), counts }
     }
 
-    /// Whether all that a box holds is surely hidden; then none of its fragments need come.
+    /// Whether everything in a box is certainly hidden; then its fragments can be skipped.
     pub(super) fn hides(&mut self, low: DVec3, high: DVec3) -> bool {
         let is_hidden = self.view.hides(&self.occupancy, low, high);
         self.counts.hidden_boxes += u64::from(is_hidden);
         is_hidden
     }
 
-    /// Takes the next fragment, which nothing hides but what came before, with the side of its plane
-    /// that the eye is on.
+    /// Takes the next fragment, which only earlier ones can hide, with the side of its plane that the
+    /// eye is on.
     pub(super) fn add(&mut self, fragment: &'a Fragment, facing: Sign) {
         self.counts.hidden_fragments -= 1;
         let face = self.view.easel.face(fragment) as usize;
@@ -162,7 +162,7 @@ impl View<'_> {
         let positions = self.scene.mesh().positions();
         let images = positions.iter().filter_map(|&point| {
             let (image, error) = self.easel.image_within(point, 0.0);
-            // Images of what is close to the eye's own plane would make all squares too large.
+            // Images of points close to the eye's plane would make all squares too large.
             (error < 1.0 && image.abs().max_element() < FARTHEST || self.near.is_none())
                 .then_some(image)
         });
@@ -172,7 +172,7 @@ impl View<'_> {
         Occupancy::new(low, high)
     }
 
-    /// Whether all that a box holds is surely covered.
+    /// Whether everything in a box is certainly covered.
     fn hides(&self, occupancy: &Occupancy, low: DVec3, high: DVec3) -> bool {
         let (mut image_low, mut image_high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for corner in 0..8 {
@@ -187,7 +187,7 @@ impl View<'_> {
         occupancy.is_covered(image_low, image_high)
     }
 
-    /// The image of a convex polygon, counter-clockwise, unless it may be off by more than `limit`.
+    /// The image of a convex polygon, counter-clockwise, unless its error may exceed `limit`.
     fn polygon<'c>(
         &self,
         corners: impl Iterator<Item = &'c Corner>,
@@ -206,7 +206,7 @@ impl View<'_> {
         Some(polygon)
     }
 
-    /// Notes that all of a triangle is painted, if the near plane leaves it whole.
+    /// Records that all of a triangle is painted, if the near plane does not cut it.
     fn add_triangle(
         &self,
         seams: &mut Seams,
@@ -232,8 +232,8 @@ impl View<'_> {
         seams.add(corners, occupancy);
     }
 
-    /// Marks the image of a face, if it is convex and its triangles all face one way: then they cover
-    /// all of the outline's inside, flat or not.
+    /// Marks the image of a face if it is convex and its triangles all face one way: then they cover the
+    /// whole inside of the outline, flat or not.
     fn cover_face(&self, occupancy: &mut Occupancy, face: u32) {
         let corners = self.scene.mesh().face(face);
         if corners.len() > MAX_COVERING_CORNERS {

@@ -1,4 +1,4 @@
-//! Regions beside each other: made so from pieces over each other, and joined where they meet.
+//! Disjoint regions: made from pieces painted over each other, and joined where they meet.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use super::region::{Region, SnapGrid};
 
 /// A painting of regions that do not overlap, listed by face; faces may come several times in a row.
 ///
-/// What meets of one face is one piece. O(n log n) in the sides of each face, in parallel.
+/// Regions of one face that meet become one piece. O(n log n) in the sides of each face, in parallel.
 pub fn by_face(regions: impl IntoIterator<Item = (u32, Vec<Region>)>, grid: &SnapGrid) -> Painting {
     let mut faces: Vec<(u32, Vec<Region>)> = Vec::new();
     for (face, regions) in regions {
@@ -20,7 +20,7 @@ pub fn by_face(regions: impl IntoIterator<Item = (u32, Vec<Region>)>, grid: &Sna
     }
     let merged: Vec<(u32, Region)> = faces
         .into_par_iter()
-        // Also where there is one: clips leave spikes of no width along its sides.
+        // Even a single one: clipping leaves spikes without width along its sides.
         .map(|(face, regions)| (face, Region::union(&regions)))
         .collect();
     let mut painting = Painting::new(true);
@@ -39,10 +39,10 @@ pub fn push(painting: &mut Painting, face: u32, region: &Region, grid: &SnapGrid
     }
 }
 
-/// What of each piece is seen after all others are painted over it: regions beside each other, one
-/// for each piece, with the grid that they are on.
+/// The part of each piece that is still seen once all others are painted over it: disjoint regions, one
+/// for each piece, with their grid.
 ///
-/// Each piece is clipped by all later ones that overlap it at once, so its border is rounded once.
+/// Each piece is clipped by all later overlapping ones in one operation, so its border is rounded once.
 /// O(sides of pieces that overlap), in parallel.
 pub fn seen(painting: &Painting) -> (Vec<Region>, SnapGrid) {
     let points = || painting.pieces().flat_map(|piece| piece.rings()).flat_map(|ring| ring.points);

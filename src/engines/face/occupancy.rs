@@ -1,4 +1,4 @@
-//! What of the image is surely covered: a quadtree of squares.
+//! Which part of the image is certainly covered: a quadtree of squares.
 //!
 //! ```text
 //!   ┌───────┬───┬───┐    a square is covered when one convex polygon covers it, or when its four
@@ -8,17 +8,17 @@
 //!   ├───────┼───┴───┤
 //! ```
 //!
-//! Source: lecture notes on visibility (Slovak), after Hearn and Baker: octants are walked from near
-//! to far, and those that fall on covered quadrants are left out with all that they hold.
+//! Source: lecture notes on visibility (Slovak), after Hearn and Baker: octants are visited from near
+//! to far, and those whose image is in covered quadrants are left out with everything in them.
 
 use glam::DVec2;
 
-/// How often squares are quartered. Finer squares are covered by smaller faces, and cost more along
-/// borders: twice as many with each level.
+/// How often squares are quartered. Smaller faces cover finer squares, but each level doubles the
+/// number of squares along borders.
 pub const LEVELS: u32 = 9;
 
-/// Squares count as covered, and rectangles as open, with a rim of this part of the smallest square:
-/// images that are off by less do no harm.
+/// Squares count as covered, and rectangles as open, with a rim of this part of the smallest square, so
+/// that rounding errors of the image smaller than this do no harm.
 pub const RIM: f64 = 1.0 / 64.0;
 
 const OPEN: u32 = u32::MAX;
@@ -51,7 +51,7 @@ impl Square {
 }
 
 impl Occupancy {
-    /// Nothing is covered of the square around a rectangle.
+    /// The square around a rectangle, with nothing covered.
     pub fn new(low: DVec2, high: DVec2) -> Self {
         let size = (high - low).max_element();
         let size = if size.is_finite() && size > 0.0 { size } else { 1.0 };
@@ -59,7 +59,7 @@ impl Occupancy {
         Self { low, size, rim, root: OPEN, quarters: Vec::new() }
     }
 
-    /// How far images may be off.
+    /// The largest error that images may have.
     pub fn rim(&self) -> f64 {
         self.rim
     }
@@ -159,7 +159,7 @@ impl Occupancy {
         self.with_quarters(node, quarters)
     }
 
-    /// Whether a rectangle is surely covered.
+    /// Whether a rectangle is certainly covered.
     pub fn is_covered(&self, low: DVec2, high: DVec2) -> bool {
         let (low, high) = (low - self.rim, high + self.rim);
         let end = self.low + self.size;
@@ -212,7 +212,7 @@ mod tests {
             move |to: f64| occupancy.is_covered(p(0.2, 0.2), p(to, 0.6))
         };
         let rim = Occupancy::new(DVec2::ZERO, DVec2::ONE).rim();
-        // The squares left of the middle are covered only by what reaches past it by the rim.
+        // Only what reaches past the middle by the rim covers the squares left of it.
         assert!(!after_covering_to(0.5 + 0.5 * rim)(0.5 - 2.0 * rim));
         let is_covered = after_covering_to(0.5 + 2.0 * rim);
         assert!(is_covered(0.5 - 2.0 * rim) && !is_covered(0.5 - 0.5 * rim));

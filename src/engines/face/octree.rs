@@ -1,24 +1,24 @@
-//! The painter with a tree of octants.
+//! The painter's algorithm with an octree.
 //!
 //! ```text
 //!      ┌───────┬───┬───┐          faces are cut where octants meet; an octant with few fragments
-//!      │       │   ┊   │          is a leaf, and has a tree of planes of its own;
+//!      │       │   ┊   │          is a leaf with its own tree of planes;
 //!      │   2   ├───┼───┤  3       seen from below left, quarter 0 may hide 1 and 2, these may
-//!      │       │   ┊   │          hide 3: the order of painting is 3, 2, 1, 0, in every octant
-//!      ├───────┼───┴───┤          anew as the eye stands to its center
+//!      │       │   ┊   │          hide 3: the order of painting is 3, 2, 1, 0, decided for each
+//!      ├───────┼───┴───┤          octant by where the eye is relative to its center
 //!      │   0   │   1   │
 //!      └───────┴───────┘
 //!   eye
 //! ```
 //!
-//! From near to far the walk leaves out what is hidden ([`mask`](super::mask)): octants whose image is
-//! covered are skipped with all that they hold.
+//! Walked from near to far, hidden parts are left out ([`mask`](super::mask)): octants whose image is
+//! covered are skipped with everything in them.
 //!
 //! Source: lecture notes on visibility (Slovak), section 3.3, and those on octree methods after Hearn
 //! and Baker; the order of the leaves is that of [`bsp`](super::bsp).
 //!
-//! Good for: halls, towns, assemblies, where large faces hide much; the tree serves many views.
-//! Cannot: cut as little as [`bsp`](super::bsp) does, since octants ask for no face.
+//! Good for: halls, towns and assemblies, where large faces hide much; the tree serves many views.
+//! Cannot: cut as little as [`bsp`](super::bsp) does, since octants ignore where faces are.
 //!
 //! # Size and time
 //!
@@ -33,8 +33,7 @@
 //! | 10 000 boxes | 120 000 | 188 174 | 5.1 s | 94 ms |
 //! | turbine blade | 199 034 | 444 965 | 3.9 s | 398 ms |
 //!
-//! What is left of the fragments from near to far, by what single faces cover and by what they cover
-//! together:
+//! Fragments left after hiding by single faces, and after hiding by what faces cover together:
 //!
 //! | model | triangles | fragments | single | together |
 //! |---|---|---|---|---|
@@ -42,10 +41,10 @@
 //! | cow | 5 856 | 13 310 | 13 064 | 7 878 |
 //! | statue | 70 000 | 166 506 | 165 253 | 83 025 |
 //!
-//! Half of the fragments of a closed body face away. Of these stay such as lie where a silhouette runs
-//! in front of them, or where the faces in front reach into an octant that is not painted yet.
+//! Half of the fragments of a closed body face away. Those that stay are behind a silhouette, or behind
+//! faces that reach into an octant not painted yet.
 //!
-//! Coherence: object coherence (an octant on a covered square is skipped with all it holds) and picture
+//! Coherence: object coherence (an octant on a covered square is skipped with everything in it) and picture
 //! sequence coherence (one tree serves all views).
 
 use super::bsp::{Forest, Link, TooManyFragments, WalkOrder, check_piercings};
@@ -63,10 +62,10 @@ use rayon::prelude::*;
 /// are skipped more rarely and leave more to the trees of planes.
 pub const LEAF_CAPACITY: usize = 48;
 
-/// How deep octants are, at most; what meets in one point cannot be parted.
+/// The most levels of octants; faces that meet in one point can never be separated.
 pub const MAX_DEPTH: u32 = 12;
 
-/// An octant that would be cut into more than this times its fragments is a leaf, however many it
+/// An octant whose division would multiply its fragments by more than this is a leaf, however many it
 /// has: fans of long, thin faces would be cut again and again.
 pub const MAX_GROWTH: f64 = 1.5;
 
@@ -75,8 +74,8 @@ const NONE: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Contents {
-    /// Eight octants around a center. Bit k of the number of one says that it is on the positive side
-    /// across axis k.
+    /// Eight octants around a center. Bit k of an octant's number is set if it is on the positive side
+    /// along axis k.
     Octants(DVec3, [u32; 8]),
     /// A tree of planes.
     Leaf(u32),
@@ -114,13 +113,13 @@ impl Octree {
     /// threads. O(n log n) on meshes of small triangles.
     ///
     /// # Errors
-    /// When there would be too many fragments, as for [`bsp::BspTree::new`](super::bsp::BspTree::new).
+    /// There would be too many fragments, as for [`bsp::BspTree::new`](super::bsp::BspTree::new).
     pub fn new(scene: &Scene) -> Result<Self, TooManyFragments> {
         check_piercings(scene)?;
         let planes = Planes::new(scene.mesh().positions(), scene.triangles());
         let fragments = Fragment::all(scene, &planes);
         let (low, high) = bounds(&fragments);
-        // A cube, so that flat scenes are not cut in their height.
+        // A cube, so that flat scenes are not cut along their height.
         let high = low + (high - low).max_element();
         let mut tasks = vec![Task { link: None, depth: 0, low, high, fragments }];
         let mut octants: Vec<Octant> = Vec::new();

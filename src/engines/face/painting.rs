@@ -4,26 +4,26 @@
 //!  piece 0        piece 1                 a piece has one outer ring, counter-clockwise,
 //!  ●──────●       ●─────────●             and any number of holes, clockwise (y up);
 //!  │      │       │  ●───●  │             each side that begins at a point knows whether
-//!  │      ┆       │  │ 1 │  │             it lies on a line of the scene
-//!  ●──────●       │  ●───●  │             ┆ a side that a split made
+//!  │      ┆       │  │ 1 │  │             it is on a line of the scene
+//!  ●──────●       │  ●───●  │             ┆ a side made by a split
 //!                 ●─────────●
 //! ```
 
 use glam::DVec2;
 
-/// The side is no line of the scene: a split or a diagonal made it.
+/// The side is not on a line of the scene: a split or a diagonal made it.
 pub const NO_LINE: u32 = u32::MAX;
 
 /// Pieces of faces in the order in which they are to be painted.
 ///
-/// Painted one over the other they give the picture. Engines whose pieces do not overlap say so.
+/// Painted one over the other they give the picture. Engines whose pieces never overlap say so.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Painting {
     points: Vec<DVec2>,
     lines: Vec<u32>,
     ring_ends: Vec<u32>,
     pieces: Vec<(u32, u32)>,
-    /// Whether the pieces lie beside each other, so that their order is of no matter.
+    /// Whether the pieces never overlap, so that their order does not matter.
     pub is_disjoint: bool,
 }
 
@@ -42,7 +42,7 @@ pub struct PaintedPiece<'a> {
 pub struct Ring<'a> {
     /// Its corners in image coordinates.
     pub points: &'a [DVec2],
-    /// For the side that begins at each corner: the line of the scene that it lies on, or
+    /// For the side that begins at each corner: the line of the scene that it is on, or
     /// [`NO_LINE`]; see [`Scene::line`](crate::model::scene::Scene::line).
     pub lines: &'a [u32],
 }
@@ -53,8 +53,8 @@ impl Painting {
         Self { is_disjoint, ..Self::default() }
     }
 
-    /// Adds a piece over all others: its rings, the outer one first, as corners and the lines of the
-    /// sides that begin there. Rings of fewer than three corners are left out.
+    /// Adds a piece over all others: its rings, the outer one first, as corners, each with the line of
+    /// the side that begins there. Rings of fewer than three corners are left out.
     pub fn push<R>(&mut self, face: u32, rings: impl IntoIterator<Item = R>)
     where
         R: IntoIterator<Item = (DVec2, u32)>,
@@ -115,7 +115,7 @@ impl<'a> PaintedPiece<'a> {
         })
     }
 
-    /// The area in square image units: holes taken off.
+    /// The area in square image units, without the holes.
     pub fn area(&self) -> f64 {
         self.rings().map(|ring| ring.signed_area()).sum()
     }

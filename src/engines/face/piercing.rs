@@ -1,17 +1,17 @@
-//! How often triangles pierce each other, guessed before an engine starts.
+//! How often triangles pierce each other, estimated before an engine starts.
 //!
-//! Engines that cut faces make at least one more fragment of each pair that pierces each other, and
-//! several where many do so in one place. The guess is from a sample of pairs in plain floating point:
-//! nothing but the readiness to start depends on it.
+//! Engines that cut faces make at least one more fragment for each pair of triangles that pierce each
+//! other, and several where many do so in one place. The estimate comes from a sample of pairs, in plain
+//! floating point: only the decision whether to start depends on it.
 
 use crate::model::scene::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Pairs in the sample. All pairs of fewer than 600 triangles are looked at.
+/// Pairs in the sample. With fewer than 600 triangles, all pairs are tested.
 const N_SAMPLES: u64 = 180_000;
 
-/// About how many pairs of triangles pierce each other. Deterministic; some ten milliseconds.
+/// About how many pairs of triangles pierce each other. Deterministic; takes some ten milliseconds.
 pub fn estimate(scene: &Scene) -> u64 {
     let n = scene.triangles().len() as u64;
     let n_pairs = n * n.saturating_sub(1) / 2;
@@ -22,7 +22,7 @@ pub fn estimate(scene: &Scene) -> u64 {
     let found = (0..n_samples)
         .into_par_iter()
         .filter(|&k| {
-            // Pair number k of all, or one of those that are spread by a multiple of the golden ratio.
+            // Pair k of all pairs, or one of a sample spread by a multiple of the golden ratio.
             let pair = if n_pairs <= N_SAMPLES {
                 k
             } else {

@@ -1,28 +1,28 @@
-//! Regions of the image on one grid of integers, and what is done with them: cut, joined, told apart.
+//! Regions of the image on one integer grid: intersected, subtracted, joined.
 //!
 //! ```text
 //!    image box            grid of 2⁵⁰ steps along its longer side
-//!   ┌───────────┐         ┌┬┬┬┬┬┬┬┬┬┬┬┐   every corner of every region is a point of it;
-//!   │  ╱╲       │   ──►   ├┼┼┼╱╲┼┼┼┼┼┼┤   a side carries the line of the scene that it lies on
-//!   │ ╱__╲      │         └┴┴┴┴┴┴┴┴┴┴┴┘   through all operations
+//!   ┌───────────┐         ┌┬┬┬┬┬┬┬┬┬┬┬┐   every corner of every region is a grid point; a side
+//!   │  ╱╲       │   ──►   ├┼┼┼╱╲┼┼┼┼┼┼┤   carries the line of the scene that it is on through
+//!   │ ╱__╲      │         └┴┴┴┴┴┴┴┴┴┴┴┘   all operations
 //!   └───────────┘
 //! ```
 //!
 //! Points of the grid are kept as whole numbers of steps in `f64`.
 //!
-//! The operations are those of the `i_overlay` crate on 64-bit integers, which are exact but for
-//! where two sides cross: that point is rounded to the grid, and sides whose ends come within a step
-//! of each other are joined there.
+//! The operations are those of the `i_overlay` crate on 64-bit integers. They are exact except where
+//! two sides cross: that point is rounded to the grid, and sides whose ends come within a step of each
+//! other are joined there.
 //!
 //! # Error
 //!
-//! One grid serves a whole image, so nothing is rounded twice but what is cut twice. The step is a
-//! power of two, at most 2⁻⁴⁹ of the longer side of the image's box; a side of the image's box
-//! being no longer than its diagonal, that is below 1.8·10⁻¹⁵ of the diagonal. An operation moves a
+//! One grid serves a whole image, so only what is cut twice is rounded twice. The step is a power of
+//! two, at most 2⁻⁴⁹ of the longer side of the image's box. A side is no longer than the diagonal, so
+//! the step is below 1.8·10⁻¹⁵ of the diagonal. An operation moves a
 //! side by at most [`STEPS_AN_OPERATION`] steps, so after `k` operations a border is within
 //! `k ·` [`STEPS_AN_OPERATION`] steps of the truth, except where sides nearly coincide and have to be
-//! rounded more than once: in round `n` they may move by 2 · 8ⁿ steps. What becomes narrower than
-//! [`SLIVER_STEPS`] by all that is nothing and is left out.
+//! rounded more than once: in round `n` they may move by 2 · 8ⁿ steps. Whatever
+//! ends up narrower than [`SLIVER_STEPS`] is left out.
 
 mod weld;
 
@@ -40,19 +40,18 @@ use i_overlay::segm::boolean::ShapeCountBoolean;
 /// step where ends are joined.
 pub const STEPS_AN_OPERATION: f64 = 2.0;
 
-/// A part of a region whose mean width is below this many steps is left out: it is what rounding
-/// leaves between sides that are one in truth. Fewer steps keep such slivers, many more would
-/// take what is there.
+/// Parts of a region with a mean width below this many steps are left out: rounding leaves them between
+/// sides that coincide in truth. A smaller value keeps such slivers; a much larger one removes real
+/// parts.
 pub const SLIVER_STEPS: f64 = 8.0;
 
-/// Sides that nearly coincide cross again and again where they are rounded. In each round the library
-/// joins to a side's end what is nearer to it than a distance that begins at two steps and grows eight
-/// times, so that all are one after a few rounds; with distances that grow slower the number of sides
-/// explodes first.
+/// Sides that nearly coincide cross again and again as they are rounded. In each round the library joins
+/// to a side's end everything within a distance that starts at two steps and grows eightfold, so that
+/// all are one after a few rounds; if the distance grows more slowly, the number of sides explodes first.
 const PRECISION: Precision = Precision { start: 2, progression: 6 };
 
 /// Steps along the longer side of the image's box, as a power of two. The library takes 62 bits;
-/// with 50 every point is an exact `f64`, and the helping lines around the box are too.
+/// with 50 every point is an exact `f64`, as are the auxiliary lines around the box.
 const STEPS_LOG2: i32 = 50;
 
 /// The map between the image and the grid.
@@ -63,15 +62,15 @@ pub struct SnapGrid {
 }
 
 impl SnapGrid {
-    /// The grid of an image that lies between `low` and `high`.
+    /// The grid of an image between the corners `low` and `high`.
     pub fn new(low: DVec2, high: DVec2) -> Self {
         let size = (high - low).max_element();
         let exponent = if size > 0.0 && size.is_finite() { libm::ilogb(size) + 1 } else { 0 };
-        // Neither the step nor its reciprocal may leave the normal numbers.
+        // Both the step and its reciprocal must be normal numbers.
         let exponent = (exponent - STEPS_LOG2).clamp(-1000, 1000);
         let step = libm::scalbn(1.0, exponent);
         let middle = low / 2.0 + high / 2.0;
-        // On a multiple of the step, so that round numbers of the image are points of the grid.
+        // A multiple of the step, so that round image coordinates are grid points.
         let origin = (middle / step).round() * step;
         Self { origin: if origin.is_finite() { origin } else { DVec2::ZERO }, step }
     }
@@ -81,7 +80,7 @@ impl SnapGrid {
         self.step
     }
 
-    /// The nearest point of the grid. Points far outside the image go to its surroundings.
+    /// The nearest grid point. Points far outside the image are clamped to its surroundings.
     pub fn snap(&self, point: DVec2) -> DVec2 {
         const FARTHEST: f64 = (1u64 << 52) as f64;
         let at = ((point - self.origin) / self.step).round();
@@ -101,7 +100,7 @@ pub struct RegionSide {
     pub from: DVec2,
     /// Where it ends.
     pub to: DVec2,
-    /// The line of the scene that it lies on, or
+    /// The line of the scene that it is on, or
     /// [`NO_LINE`](super::painting::NO_LINE).
     pub line: u32,
 }
@@ -116,7 +115,7 @@ pub struct Region {
     high: DVec2,
 }
 
-/// The line that a side lies on, as the library carries it along.
+/// The line that a side is on, as the library carries it along.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct LineTag(u32);
 
@@ -124,7 +123,7 @@ impl OverlayEdgeData for LineTag {
     type Store = ();
 
     fn merge(both: EdgeDataMerge<ShapeCountBoolean, Self>, _: &mut ()) -> Self {
-        // NO_LINE is the highest number, so a line goes before none.
+        // NO_LINE is the highest number, so any line takes precedence.
         Self(both.lhs_data.0.min(both.rhs_data.0))
     }
 }
@@ -146,7 +145,7 @@ impl Region {
         operated(OverlayRule::Subject, &sides, &[])
     }
 
-    /// Whether there is nothing of it.
+    /// Whether it is empty.
     pub fn is_empty(&self) -> bool {
         self.sides.is_empty()
     }
@@ -161,7 +160,7 @@ impl Region {
         (self.low, self.high)
     }
 
-    /// Whether its box and that of another have more than a border in common.
+    /// Whether its box and that of another share more than a border.
     pub fn boxes_overlap(&self, other: &Self) -> bool {
         self.low.cmplt(other.high).all() && other.low.cmplt(self.high).all()
     }
@@ -171,7 +170,7 @@ impl Region {
         area_of(&self.sides)
     }
 
-    /// What of it lies within another region.
+    /// The part within another region.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         if !self.boxes_overlap(other) {
@@ -180,7 +179,7 @@ impl Region {
         operated(OverlayRule::Intersect, &self.sides, &other.sides)
     }
 
-    /// What of it lies outside another region.
+    /// The part outside another region.
     #[must_use]
     pub fn without(&self, other: &Self) -> Self {
         if !self.boxes_overlap(other) {
@@ -189,7 +188,7 @@ impl Region {
         operated(OverlayRule::Difference, &self.sides, &other.sides)
     }
 
-    /// What of it lies outside several regions.
+    /// The part outside several regions.
     #[must_use]
     pub fn without_all<'a>(&self, others: impl IntoIterator<Item = &'a Self>) -> Self {
         let clip: Vec<RegionSide> =
@@ -200,10 +199,10 @@ impl Region {
         operated(OverlayRule::Difference, &self.sides, &clip)
     }
 
-    /// All that lies in any of several regions. O(n log n) in their sides.
+    /// The union of several regions. O(n log n) in their sides.
     ///
-    /// Borders that two of them share are rounded apart where only one has a corner; they are made one
-    /// before, so that no crack stays between.
+    /// Where only one of two regions has a corner on a border they share, rounding opens a crack; such
+    /// borders are welded first.
     pub fn union<'a>(regions: impl IntoIterator<Item = &'a Self>) -> Self {
         let sides: Vec<RegionSide> =
             regions.into_iter().flat_map(|region| region.sides.iter().copied()).collect();
@@ -225,7 +224,7 @@ impl Region {
         parts
     }
 
-    /// Whether a point lies within it or on its border. O(sides).
+    /// Whether a point is within it or on its border. O(sides).
     pub fn contains(&self, point: DVec2) -> bool {
         let mut inside = false;
         for side in &self.sides {

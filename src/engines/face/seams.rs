@@ -1,16 +1,16 @@
 //! What faces cover together: squares of the image that no open seam runs through.
 //!
 //! ```text
-//!    ┌───┬───┬───┐     each triangle that is painted counts along its sides, counter-clockwise; where
-//!    │  ╱│╲  │   │     two triangles meet the counts cancel, and the seam between them closes. Those
-//!    ├─●─┼─╲─┼───┤     left are the border of all that is painted. A square without any border has
-//!    │  ╲│  ●│   │     all of its points covered equally often: if a painted triangle reaches into
-//!    └───┴───┴───┘     it, at least once
+//!    ┌───┬───┬───┐     each painted triangle counts along its sides, counter-clockwise; where two
+//!    │  ╱│╲  │   │     triangles meet, the counts cancel and the seam between them closes. Those left
+//!    ├─●─┼─╲─┼───┤     are the border of everything painted. In a square that no border enters, all
+//!    │  ╲│  ●│   │     points are covered equally often: at least once if a painted triangle reaches
+//!    └───┴───┴───┘     into it
 //! ```
 //!
-//! That is the winding number of the border around a point, which is the number of triangles over it
-//! as all of them run counter-clockwise. So a mesh of faces smaller than the squares covers them, too,
-//! except along its silhouettes; it need not be closed, and may meet in any number of faces at an edge.
+//! That is the winding number of the border around a point, which equals the number of triangles over
+//! it, since all of them run counter-clockwise. So a mesh of faces smaller than the squares covers them
+//! too, except along its silhouettes. It need not be closed, and any number of faces may share an edge.
 
 use glam::DVec2;
 use rustc_hash::FxHashMap;
@@ -25,8 +25,8 @@ pub(super) struct Seams {
     low: DVec2,
     size: f64,
     rim: f64,
-    /// For each edge from a lower to a higher vertex how many triangles more run along than against
-    /// it; none that are zero.
+    /// For each edge from a lower to a higher vertex, how many more triangles run along it than against
+    /// it; without zeros.
     turns: FxHashMap<[u32; 2], i32>,
     /// How many open seams run through each square.
     open: Vec<u32>,
@@ -50,15 +50,15 @@ impl Seams {
         }
     }
 
-    /// How far images of corners may be off. Open seams keep out of squares with twice the rim around
-    /// them, so true ones with more than one and a half; a triangle that comes nearer than one rim to
-    /// a square reaches truly into that.
+    /// The largest error of the images of corners. Open seams stay out of squares with twice this rim
+    /// around them, so the true seams stay out with more than one and a half; a triangle that comes
+    /// within one rim of such a square really reaches into it.
     pub(super) fn limit(&self) -> f64 {
         self.rim / 4.0
     }
 
-    /// Adds a triangle that is painted, its corners counter-clockwise in the image, and marks what is
-    /// covered by that. A triangle that reaches out of the image is left out, which does no harm.
+    /// Adds a painted triangle, its corners counter-clockwise in the image, and marks what it covers. A
+    /// triangle that reaches beyond the image is left out, which does no harm.
     pub(super) fn add(&mut self, corners: [(u32, DVec2); 3], occupancy: &mut Occupancy) {
         let places = corners.map(|(_, image)| (image - self.low) / self.size);
         let is_inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.max_element() <= SIDE as f64;
@@ -105,7 +105,7 @@ impl Seams {
     }
 }
 
-/// The squares that a segment comes nearer to than `rim`, and some more.
+/// The squares that a segment comes closer to than `rim`, and some more.
 fn squares(a: DVec2, b: DVec2, rim: f64, mut found: impl FnMut(usize)) {
     let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
     let number = |at: f64| (at.max(0.0) as usize).min(SIDE - 1);

@@ -2,10 +2,10 @@
 //!
 //! Read in "Algoritmy viditeľnosti" (section Weiler – Athertonov algoritmus) and in
 //! "Bereichsunterteilungs-Algorithmen" (Weiler-Atherton-Algorithmus). The list of polygons L is
-//! sorted by the distance of their nearest points. Its first one, P, clips the others into a list I
-//! of what lies inside it and a list O of what lies outside. What of I is behind P is hidden; if
-//! nothing is left of I, all of P is seen. Otherwise the sorting was wrong there, and the same is
-//! done with I first. Then it goes on with O.
+//! sorted by the distance of their nearest points. The first one, P, clips the others into a list I of
+//! the parts inside it and a list O of the parts outside. The parts of I behind P are hidden; if nothing
+//! is left of I, all of P is visible. Otherwise the sorting was wrong there, and I is processed first in
+//! the same way. Then the algorithm goes on with O.
 //!
 //! ```text
 //!        ┌──────┐ Q
@@ -14,27 +14,27 @@
 //!     └──────┘          O = { Q − P }    P is done
 //! ```
 //!
-//! Where a whole polygon is in front of P, it is simply taken before P; only where it crosses P, or
-//! where polygons cover each other in turn, are parts of I solved apart.
+//! A polygon that is wholly in front of P is simply taken before P; parts of I are processed separately
+//! only where one crosses P, or where polygons cover each other in a cycle.
 //!
-//! The set S holds the polygons that clip at the moment. One of them that comes up again has been
-//! clipped by all that is in front of it and is drawn without clipping, so nothing goes in circles.
+//! The set S holds the polygons that are clipping. If one of them comes up again, it has been clipped by
+//! everything in front of it and is drawn without clipping, so the recursion ends.
 //!
 //! Differs from the sources in that
 //!
-//! * S is kept through all calls: emptied on each, as printed, it never holds what it must;
-//! * P itself is the last of I, since what is in front of it clips it, too;
-//! * faces that pierce each other are cut where their depths are equal, so that what lies inside P
-//!   is either behind or in front of it, where the sources take polygons that do not cross.
+//! * S is kept through all calls: emptied on each call, as printed, it would never contain what it should;
+//! * P itself is the last of I, since polygons in front of it clip it too;
+//! * faces that pierce each other are cut where their depths are equal, so that each part inside P is
+//!   either behind or in front of it, while the sources assume polygons that do not cross.
 //!
-//! Good for: cutters, engravers, inks that must not overlap. The regions lie beside each other, and
-//! all of a face that is seen in one place is one region with holes.
+//! Good for: cutters, engravers, and inks that must not overlap. The regions are disjoint, and each
+//! connected visible part of a face is one region with holes.
 //!
-//! Exactness: what is in front is decided exactly, by [`Images::place`], but for faces that pierce
-//! each other, whose line is rounded to the grid like all points; see [`super::region`] for the bound.
+//! Exactness: which face is in front is decided exactly, by [`Images::place`], except for faces that
+//! pierce each other, whose common line is rounded to the grid like all points; see [`super::region`] for the bound.
 //!
-//! Cost: one operation for each face, with all faces before it that its box overlaps, and one for each
-//! pair that crosses or is sorted wrongly: O(n²) at worst. What overlaps is found by an index of boxes.
+//! Cost: one operation for each face, with all nearer faces that its box overlaps, and one for each pair
+//! that crosses or is sorted wrongly: O(n²) at worst. An index of boxes finds the overlaps.
 //! On two busy cores, with reading and writing: a smooth closed mesh of 5,900 triangles 0.6 s, an
 //! assembly of 9,000 1.1 s, 1,400 faces that pierce each other in heaps 2.6 s. More than [`MOST_FACES`]
 //! or [`MOST_PAIRS`] are refused at once.
@@ -60,14 +60,14 @@ use crate::model::scene::Scene;
 /// More faces (triangles, of bent ones) in the image than this are refused.
 pub const MOST_FACES: usize = 10_000;
 
-/// More pairs of faces whose boxes overlap in the image than this are refused. Assemblies of thin
-/// parts have half as many and take seconds; where most of the pairs cross, so many take minutes.
+/// More pairs of faces whose boxes overlap in the image than this are refused. Assemblies of thin parts
+/// have half as many and take seconds; if most pairs cross, this many take minutes.
 pub const MOST_PAIRS: u64 = 1_000_000;
 
-/// Polygons that one piece of parallel work compares with the first one, at least.
+/// The fewest polygons that a parallel task compares with the first one.
 const MIN_LEN: usize = 8;
 
-/// What clipping took.
+/// How much work clipping was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct WeilerAthertonCounts {
     /// Polygons that were clipped: faces, or triangles of bent ones, in the image.
@@ -76,19 +76,19 @@ pub struct WeilerAthertonCounts {
     pub regions: u64,
     /// Pairs of polygons that were compared.
     pub comparisons: u64,
-    /// Of these, pairs that overlap in the image while the plane of each cuts the other, so that they
-    /// may pierce each other.
+    /// Of these, pairs that overlap in the image while the plane of each cuts the other: they may pierce
+    /// each other.
     pub crossings: u64,
     /// Polygons that were taken before a nearer one, since they are in front of it.
     pub moves: u64,
-    /// Polygons that others clipped apart, in lists of their own.
+    /// Polygons clipped separately, in their own lists.
     pub nested: u64,
 }
 
 /// Finds the visible region of each face.
 ///
-/// The pieces lie beside each other; a face has one for each place where it is seen, in the order of
-/// faces. See the module for what is exact.
+/// The pieces are disjoint, in the order of faces; a face has one for each connected part that is seen.
+/// See the module for what is exact.
 ///
 /// # Errors
 /// [`FaceError::TooManyFaces`], [`FaceError::TooManyPairs`].
@@ -132,7 +132,7 @@ pub fn solve(
     let mut is_begun = vec![false; n];
     let mut near = Vec::new();
     for &nearest in &order {
-        // What is in front of the last one is put on top of it, to come first.
+        // Polygons in front of the last one are put on top of it, to come first.
         let mut waiting = vec![nearest];
         while let Some(&first) = waiting.last() {
             if is_done[first as usize] {
@@ -194,7 +194,7 @@ struct Clipping<'a> {
     images: &'a Images<'a>,
     /// The set S.
     clipping: Vec<bool>,
-    /// What is seen of each polygon.
+    /// The visible part of each polygon.
     drawn: Vec<Vec<Region>>,
     comparisons: AtomicU64,
     crossings: AtomicU64,
@@ -202,7 +202,8 @@ struct Clipping<'a> {
 }
 
 impl Clipping<'_> {
-    /// What of the rest of polygon `other` lies within `region` of polygon `first` and in front of it.
+    /// The part of what is left of polygon `other` that is within `region` of polygon `first` and in front
+    /// of it.
     fn in_front(&self, first: u32, region: &Region, other: u32, left: &Rest) -> Region {
         let (this, that) = (first as usize, other as usize);
         self.comparisons.fetch_add(1, Ordering::Relaxed);
@@ -220,7 +221,7 @@ impl Clipping<'_> {
         }
     }
 
-    /// The part of `inside` where `that` is nearer than `this`, cut where they are equally near.
+    /// The part of `inside` where `that` is nearer than `this`, cut where both are equally near.
     fn nearer_part(&self, inside: Region, this: usize, that: usize) -> Region {
         match self.images.where_nearer(that, this) {
             Some(half) => inside.within(&half),
@@ -233,9 +234,9 @@ impl Clipping<'_> {
         }
     }
 
-    /// Draws `region` of polygon `first`, which is in S, after what is in front of it: the algorithm
-    /// on a list L, sorted from near to far, that ends with `first` itself. A list that waits for
-    /// another is kept with the polygon that is in S for as long.
+    /// Draws `region` of polygon `first`, which is in S, after everything in front of it: the algorithm on
+    /// a list L, sorted from near to far, that ends with `first` itself. A list that waits for another is
+    /// kept with the polygon that is in S meanwhile.
     fn draw(&mut self, first: u32, region: Arc<Region>, in_front: Vec<(u32, Region)>) {
         let list_of = |first, region, in_front: Vec<(u32, Region)>| -> VecDeque<(u32, Rest)> {
             let before = in_front.into_iter().map(|(other, front)| (other, Rest::new(front)));
@@ -267,7 +268,7 @@ impl Clipping<'_> {
             let mut inside = Vec::new();
             let region = Arc::new(region);
             for (other, left) in list {
-                // What clips at the moment comes last: all before it is in front of it.
+                // The polygon that clips comes last: all before it are in front of it.
                 if !self.clipping[*other as usize] {
                     let front = self.in_front(first, &region, *other, left);
                     if !front.is_empty() {
@@ -286,8 +287,8 @@ impl Clipping<'_> {
     }
 }
 
-/// What is left of a polygon. What clips it is kept beside it and taken off in one operation when the
-/// polygon comes up, so its border is rounded once, and the cost of many clips does not add up.
+/// What is left of a polygon. The regions that clip it are collected and subtracted in one operation when
+/// the polygon comes up, so its border is rounded once, and the cost of many clips does not add up.
 #[derive(Debug, Default)]
 struct Rest {
     region: Region,

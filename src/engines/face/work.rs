@@ -1,4 +1,4 @@
-//! What engines count of their work, each in its own terms.
+//! How much work an engine did, each in its own terms.
 
 use serde::Serialize;
 
@@ -8,11 +8,11 @@ use super::{FaceEngine, depth_sort, warnock, weiler_atherton};
 /// How often fragments were cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct FragmentCounts {
-    /// Fragments of faces that there are at the end.
+    /// Fragments of faces at the end.
     pub fragments: u64,
-    /// Times that a fragment was cut in two, not counting cuts at the near plane.
+    /// How often a fragment was cut in two, not counting cuts at the near plane.
     pub splits: u64,
-    /// Times that a fragment was compared with a plane or with another fragment.
+    /// How often a fragment was compared with a plane or with another fragment.
     pub tests: u64,
 }
 
@@ -24,8 +24,7 @@ impl FragmentCounts {
     }
 }
 
-/// What an engine did for one view. Serialized, it is the counts alone: which engine they are of is
-/// said elsewhere.
+/// What an engine did for one view. Serialized, it is the counts alone, without the engine's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum FaceWork {

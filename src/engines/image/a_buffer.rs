@@ -1,28 +1,28 @@
-//! The A-buffer: what share each triangle has in a pixel; anti-aliased, and transparent if wanted.
+//! The A-buffer: the share of each triangle in a pixel; anti-aliased, and transparent on request.
 //!
 //! ```text
 //!   a pixel's 16 samples      a fragment: mask   · · · ·    front to back:
-//!                             of the samples     ■ · · ·    ■ takes what no nearer
-//!   ╲  B                      that a triangle    ■ ■ · ·    fragment has taken, or,
-//!   A╲                        covers             ■ ■ ■ ·    with opacity α, α of it
+//!                             of the samples     ■ · · ·    ■ takes the samples that no
+//!   ╲  B                      that a triangle    ■ ■ · ·    nearer fragment took, or with
+//!   A╲                        covers             ■ ■ ■ ·    opacity α, the part α of them
 //! ```
 //!
 //! The samples are the pixel centers of a picture with four times as many pixels along each side, so
 //! they follow the same pixel rule. Each fragment knows the least and greatest nearness of its samples
 //! (zmin, zmax), and fragments are taken front to back:
 //!
-//! * Fragments that share no sample, or of which one ends before the other begins, are in one order all
-//!   over the pixel.
-//! * For any other two, a *priority mask* P tells in which of the samples that they share the first one
-//!   is nearer. They act on each other by `A' = A ∧ (¬B ∨ P)` and `B' = B ∧ ¬(A ∧ P)`: the higher mask is
-//!   what a fragment keeps in front of the other, the lower mask is what stays behind it.
+//! * Two fragments that share no sample, or with disjoint depth ranges, have the same order in the whole
+//!   pixel.
+//! * For any other two, a *priority mask* P says in which of the shared samples the first one is nearer.
+//!   They act on each other by `A' = A ∧ (¬B ∨ P)` and `B' = B ∧ ¬(A ∧ P)`: the higher mask is what a
+//!   fragment keeps in front of the other, the lower mask what remains behind it.
 //!
-//! Carpenter estimates P from zmin and zmax, since he keeps no planes. The planes are at hand here, so P
-//! is exact, and opaque shares always equal a picture with 16 times the pixels. zmin and zmax still tell
-//! when no mask is needed. With glass, what is behind is not dropped; it waits for its turn.
+//! Carpenter estimates P from zmin and zmax, since he keeps no planes. Here the planes are known, so P is
+//! exact, and opaque shares always equal a picture with 16 times the pixels. zmin and zmax still show when
+//! no mask is needed. With glass, fragments behind are not dropped; they wait for their turn.
 //!
 //! Source: German notes, "A-Buffer"; lecture notes on visibility (Slovak), end of section 2.1: lists
-//! of all that covers a pixel, for transparency. Carpenter 1984.
+//! of everything that covers a pixel, for transparency. Carpenter 1984.
 //! Coherence: face coherence (one fragment stands for up to 16 samples) and depth coherence (zmin and
 //! zmax order most fragments).
 //! Good for: smooth borders, glass. Keeps the fragments of one strip.
@@ -40,7 +40,7 @@ const SAMPLES: u32 = SIDE * SIDE;
 /// cost the square of their number.
 const MOST_MASKED: usize = 48;
 
-/// What part of a pixel's light comes from a triangle.
+/// The part of a pixel's light that comes from a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Share {
     /// Number in the raster.
@@ -152,7 +152,7 @@ impl Resolver<'_> {
     fn shares(&mut self, column: u32, row: u32) -> &[Share] {
         self.shares.clear();
         self.list.sort_by(|a, b| b.nearest.cmp(&a.nearest).then(a.triangle.cmp(&b.triangle)));
-        // How much of the light each sample lets through what is in front so far.
+        // How much light reaches each sample through the fragments in front so far.
         let mut passing = [1.0; SAMPLES as usize];
         if !self.may_cross() {
             for k in 0..self.list.len() {
@@ -175,7 +175,7 @@ impl Resolver<'_> {
                 self.lower.push(priority);
             }
         }
-        // In rounds: each takes the samples in which all that is in front of it is done.
+        // In rounds: each fragment takes the samples where everything in front of it is done.
         let n = self.list.len();
         let mut left: Vec<u16> = self.list.iter().map(|fragment| fragment.mask).collect();
         while left.iter().any(|&mask| mask != 0) {
@@ -213,8 +213,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// The priority mask of fragment `j` over fragment `k`: the samples of both in which `j` is nearer;
-    /// at equal depths the lower number is.
+    /// The priority mask of fragment `j` over fragment `k`: the samples of both in which `j` is nearer. At
+    /// equal depths the lower number is nearer.
     fn in_front_of(&self, j: usize, k: usize, (column, row): (u32, u32)) -> u16 {
         let (a, b) = (&self.list[j], &self.list[k]);
         let common = a.mask & b.mask;

@@ -1,12 +1,12 @@
 //! The edges that a row meets, kept from row to row.
 //!
 //! ```text
-//!   S, by first row:   [e1 e4] [ ] [e2] [e3 e5] …      taken once their row comes
-//!   A, by column:      e4 e1 e2                        left out once it is past
+//!   S, by first row:   [e1 e4] [ ] [e2] [e3 e5] …      added when their row comes
+//!   A, by column:      e4 e1 e2                        removed after their last row
 //! ```
 //!
-//! From row to row an edge moves by its slope (coherence of edges and scan lines); the column is then
-//! put right exactly, so the steps' rounding does not matter.
+//! From row to row an edge moves by its slope (edge and scan-line coherence); the column is then corrected
+//! exactly, so rounding of the steps does not matter.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(super) struct ActiveEdge {
     edge: PixelEdge,
     /// Number in the raster of the triangle that it borders.
     pub(super) triangle: u32,
-    /// Last row, not included.
+    /// The row after its last one.
     end: u32,
     x: f64,
     /// The first column on its right.
@@ -28,7 +28,7 @@ pub(super) struct ActiveEdge {
 
 /// All edges of a strip, and those that the row meets.
 pub(super) struct EdgeTable {
-    /// By first row; the last ones begin first.
+    /// In reverse order of their first rows.
     waiting: Vec<(u32, ActiveEdge)>,
     active: Vec<ActiveEdge>,
     width: u32,
@@ -64,7 +64,7 @@ impl EdgeTable {
         for active in &mut self.active {
             active.column = active.edge.column_near(row, active.x, self.width);
         }
-        // Nearly sorted already, which this sort makes use of.
+        // Nearly sorted already, which this sort exploits.
         self.active.sort_by_key(|active| (active.column, active.triangle));
         &self.active
     }

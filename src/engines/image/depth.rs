@@ -1,10 +1,9 @@
 //! How near a triangle is at a pixel's center: the half of the pixel rule that is about depth.
 //!
-//! *Nearness* is 1 / w in perspective, w being the distance along the direction of view, and a
-//! constant minus that distance in orthographic projection; the constant is such that it is always
-//! positive. Larger is nearer, and along a straight line in the image it changes evenly, so over
-//! a triangle it is `base + column · along_row + row · down`: one multiplication and one addition
-//! from pixel to pixel. The sum is not accumulated, so that every engine gets the same number.
+//! *Nearness* is 1 / w in perspective, where w is the distance along the direction of view, and a constant
+//! minus w in orthographic projection; the constant keeps it positive. Larger is nearer. It is linear in
+//! the image, so over a triangle it is `base + column · along_row + row · down`: one multiplication and
+//! one addition for each pixel. The sum is not accumulated, so that every engine gets the same number.
 //!
 //! Nearness is compared as a [`Depth`]: rounded to 40 bits. Rounding errors of the plane are a
 //! thousand times smaller, so faces in one plane are at equal depth nearly everywhere and the lowest
@@ -14,8 +13,8 @@ use glam::{DVec2, DVec3};
 
 use super::edge::center;
 
-/// Low bits of a number's 52 that [`Depth`] leaves out. Fewer let rounding errors be seen where
-/// faces coincide; more make one of what differs.
+/// Low bits of a number's 52 that [`Depth`] drops. With fewer, rounding errors show where faces coincide;
+/// with more, different depths become equal.
 const BITS_LEFT_OUT: u32 = 12;
 
 /// How near; larger is nearer. 0 is infinitely far away.
@@ -39,7 +38,7 @@ impl Depth {
         Self(ordered.saturating_add(1 << (BITS_LEFT_OUT - 1)) >> BITS_LEFT_OUT)
     }
 
-    /// The depth for a nearness; what is not positive is infinitely far away.
+    /// The depth for a nearness; one that is not positive is infinitely far away.
     #[inline]
     pub fn of(nearness: f64) -> Self {
         // The bits of positive numbers are ordered as the numbers are.

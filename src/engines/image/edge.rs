@@ -1,15 +1,15 @@
-//! Which pixel centers lie right of an edge: the half of the pixel rule that is about borders.
+//! Which pixel centers are right of an edge: the half of the pixel rule that is about borders.
 //!
 //! ```text
-//!          a ●                 the edge is met in the rows whose centers have
+//!          a ●                 the edge meets the rows whose centers have
 //!     ·   ·  │╲·   ·   ·       a.y ≤ y < b.y; in each it gives the column of
 //!     ·   ·   ·╲  (x)  ·       the first center on it or right of it, here x;
-//!     ·   ·   · │ ·   ·        a triangle covers the columns from that of its
-//!               ● b            one edge up to, without, that of the other.
+//!     ·   ·   · │ ·   ·        a triangle covers the columns from the one of its
+//!               ● b            left edge up to the one before its right edge's.
 //! ```
 //!
-//! A border that two triangles share is the same edge to both, so the one begins where the other
-//! ends: no pixel is left out and none is taken twice.
+//! A border that two triangles share is the same edge for both, so one begins where the other ends: no
+//! pixel is missed and none is covered twice.
 
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ pub struct PixelEdge {
 }
 
 impl PixelEdge {
-    /// The edge between two points; `None` when it is level, since no row meets it then.
+    /// The edge between two points; `None` if it is horizontal, since it meets no row then.
     #[inline]
     pub fn new(a: DVec2, b: DVec2) -> Option<Self> {
         let (upper, lower) = if a.y < b.y { (a, b) } else { (b, a) };
@@ -40,7 +40,7 @@ impl PixelEdge {
     /// The rows that meet the edge, of those in `within`.
     #[inline]
     pub fn rows(&self, within: &Range<u32>) -> Range<u32> {
-        // Taking ½ off is exact wherever the result is near an integer that matters.
+        // Subtracting ½ is exact wherever the result is near an integer that matters.
         let from = first_center(self.upper.y, within.end).max(within.start);
         let to = first_center(self.lower.y, within.end).max(from);
         from..to
@@ -68,9 +68,9 @@ impl PixelEdge {
     #[inline]
     pub fn column(&self, row: u32, width: u32) -> u32 {
         let estimate = self.estimate(row);
-        // The slope and the way down are off by 2 ε of their sizes each, their product by one more;
-        // it is at most |Δx|, and the sum is rounded once: below 7 ε (|x₁| + |x₂|). The 1 stands for
-        // what underflows.
+        // The slope and the distance down have relative errors of 2 ε each, their product one more; it
+        // is at most |Δx|, and the sum is rounded once: below 7 ε (|x₁| + |x₂|). The 1 covers
+        // underflow.
         let error = 8.0 * f64::EPSILON * (self.upper.x.abs() + self.lower.x.abs() + 1.0);
         let column = first_center(estimate, width);
         let to_right = center(column) - estimate;
@@ -123,7 +123,7 @@ impl PixelEdge {
     #[inline]
     pub fn has_on_right(&self, column: u32, row: u32) -> bool {
         let center = DVec2::new(center(column), center(row));
-        // With y downwards, what is right of an edge that runs down turns the negative way.
+        // With y downward, points right of an edge that runs down make a negative turn.
         orient2d(self.upper, self.lower, center) != Sign::Positive
     }
 }
@@ -137,7 +137,7 @@ pub fn center(pixel: u32) -> f64 {
 /// The first pixel whose center is at `x` or above, at most `end`.
 #[inline]
 pub fn first_center(x: f64, end: u32) -> u32 {
-    // The cast rounds towards 0 and turns what is negative or not a number into 0.
+    // The cast rounds toward 0 and turns negative numbers and NaN into 0.
     let below = (x - 0.5) as u32;
     below.saturating_add(u32::from(x - 0.5 > f64::from(below))).min(end)
 }

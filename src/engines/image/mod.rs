@@ -6,7 +6,7 @@
 //!                     │    z_buffer   scan_line   spanning   watkins   ray_cast   painter
 //!                     ├──► a strip of rows at a time, strips in parallel ──► items ─► preview
 //!                     │
-//!                     └──► a_buffer: 16 samples a pixel ──► shares of each pixel ───► preview
+//!                     └──► a_buffer: 16 samples per pixel ► shares of each pixel ───► preview
 //! ```
 //!
 //! | engine | keeps | decides | cost |
@@ -21,7 +21,7 @@
 //!
 //! # The pixel rule
 //!
-//! All engines answer the same question, so that all give the same picture:
+//! All engines answer the same question, so all give the same picture:
 //!
 //! - A pixel shows what its *center* shows; the pixel in column `i` of row `j` has its center at
 //!   (i + ½, j + ½), x to the right and y downwards (see [`raster`]).
@@ -34,7 +34,7 @@
 //! - The nearest of the covering triangles is seen, by the depth of its plane at the center; at equal
 //!   depths the one with the lowest number, so that of the lowest face (see [`depth`]).
 //!
-//! Each module says which coherence it uses: what it carries on from one pixel, row or face to the next.
+//! Each module says which coherence it uses: what it carries over from one pixel, row or face to the next.
 
 pub mod depth;
 pub mod edge;

@@ -1,4 +1,4 @@
-//! The painter: faces from far to near, each painted over what is there.
+//! The painter's algorithm: faces from far to near, each painted over the ones before.
 //!
 //! ```text
 //!   engines::face ─► fragments from far to near ─► triangles in pixels, in that order ─► items
@@ -6,10 +6,10 @@
 //! ```
 //!
 //! Source: lecture notes on visibility (Slovak), section 3: Newell, Newell and Sancha's order with
-//! its tests and splits ([`depth_sort`]); scenes that would take too long to sort are ordered by a
-//! tree of planes ([`bsp`]), and those that have too many crossing faces for that, too, are refused.
+//! its tests and splits ([`depth_sort`]). Scenes that would take too long to sort are ordered by a tree
+//! of planes ([`bsp`]), and scenes with too many crossing faces even for that are refused.
 //!
-//! Good for: a check of the order that fills are painted in; it keeps nothing but the order.
+//! Good for: checking the order in which fills are painted; it keeps nothing but the order.
 //!
 //! Coherence: face coherence (a face is painted row by row, without looking at any other).
 
@@ -24,7 +24,9 @@ use crate::model::scene::Scene;
 
 /// The faces of a scene pierce each other too often to be put in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("the faces pierce each other so often that the painter finds no order in reasonable time")]
+#[error(
+    "the faces pierce each other too often for the painter to find an order in reasonable time"
+)]
 pub struct NoOrder;
 
 /// The picture whose items are in the order of painting. O(triangles log triangles) usually; see

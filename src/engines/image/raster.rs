@@ -49,7 +49,7 @@ impl PixelMap {
         Self { scale: self.scale * f64::from(n), origin: self.origin * f64::from(n) }
     }
 
-    /// Shows the rectangle between `low` and `high` as large as leaves `margin` pixels on each side.
+    /// Shows the rectangle between `low` and `high` as large as a margin of `margin` pixels allows.
     pub fn fitting((low, high): (DVec2, DVec2), size: (u32, u32), margin: f64) -> Self {
         let (width, height) = (f64::from(size.0), f64::from(size.1));
         let room = DVec2::new(width - 2.0 * margin, height - 2.0 * margin).max(DVec2::ONE);
@@ -181,7 +181,7 @@ impl Raster {
         let mut corners: Vec<DVec3> = view.images.par_iter().map(in_pixels).collect();
         let all = 0..scene.triangles().len() as u32;
         let is_cut = |triangle: u32| view.is_cut(scene.triangles()[triangle as usize]);
-        // What the near plane leaves of triangles has corners of its own.
+        // Clipping at the near plane adds corners.
         let mut pieces = Vec::new();
         let cut: Vec<u32> = all.clone().into_par_iter().filter(|&n| is_cut(n)).collect();
         for triangle in cut {
@@ -265,7 +265,7 @@ impl Raster {
         self.height
     }
 
-    /// Number of triangles that may show, pieces of those that the near plane cuts among them.
+    /// Number of triangles that may show, counting the pieces of those that the near plane cuts.
     pub fn len(&self) -> usize {
         self.items.len()
     }
@@ -275,7 +275,7 @@ impl Raster {
         self.items.is_empty()
     }
 
-    /// The triangle of an item; panics when there is none of that number. A few divisions.
+    /// The triangle of an item; panics if the number is too large. A few divisions.
     #[inline]
     pub fn triangle(&self, item: u32) -> RasterTriangle {
         let item = &self.items[item as usize];
@@ -298,7 +298,7 @@ impl Raster {
         self.strip_starts.len() - 1
     }
 
-    /// A strip; panics when there is none of that number.
+    /// A strip; panics if the number is too large.
     pub fn strip(&self, number: usize) -> RowStrip<'_> {
         let from = number as u32 * STRIP_ROWS;
         let listed = self.strip_starts[number]..self.strip_starts[number + 1];
@@ -327,14 +327,12 @@ impl<'a> Corners<'a> {
         let (eye, frame) = (camera.eye(), camera.frame());
         let images: Vec<ImagePoint> =
             positions.par_iter().map(|&p| ImagePoint::new(p - eye, camera, &frame)).collect();
-        let near = match camera.projection() {
-            Projection::Perspective { near, .. } => Some(near * camera.forward().length()),
-            Projection::Orthographic => None,
-        };
+        let near = camera.near_distance();
         let range = |(low, high): (f64, f64), depth: f64| (low.min(depth), high.max(depth));
         let depths = images.iter().map(|image| image.depth);
         let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), range);
-        // The farthest nearness is the scene's depth or more, so that rounding is even all over.
+        // The farthest nearness is at least the scene's depth, so that rounding is about the same
+        // everywhere.
         let size = (high - low).max(low.abs().max(high.abs()) * f64::EPSILON);
         let farthest = high + if size > 0.0 { size } else { 1.0 };
         Self { scene, sight: Sight::new(positions, camera), images, near, farthest }
@@ -347,14 +345,14 @@ impl<'a> Corners<'a> {
         self.sight.turn(p, q, r) == Sign::Zero
     }
 
-    /// Whether the near plane takes off a part of a triangle, or all of it.
+    /// Whether the near plane cuts off part of a triangle, or all of it.
     #[inline]
     fn is_cut(&self, vertices: [u32; 3]) -> bool {
         self.near.is_some_and(|near| vertices.iter().any(|&v| self.images[v as usize].w < near))
     }
 
-    /// The corners of what the near plane leaves of a triangle: up to two triangles. Nothing when it
-    /// is edge-on.
+    /// The corners of the part of a triangle beyond the near plane: up to two triangles. Nothing if it is
+    /// edge-on.
     pub fn pieces(&self, triangle: u32) -> [Option<[ImagePoint; 3]>; 2] {
         let vertices = self.scene.triangles()[triangle as usize];
         if self.is_edge_on(triangle) {
@@ -363,7 +361,7 @@ impl<'a> Corners<'a> {
         let corners = vertices.map(|vertex| self.images[vertex as usize]);
         let Some(near) = self.near else { return [Some(corners), None] };
         let kept = corners.map(|corner| corner.w >= near);
-        // From the kept corner to the other, so that neighbors get the same point.
+        // From the corner that is kept to the other, so that neighbors get the same point.
         let cut = |from: usize, to: usize| {
             let (a, b) = (corners[from], corners[to]);
             let mut point = a.towards(b, (a.w - near) / (a.w - b.w));
@@ -387,8 +385,8 @@ impl<'a> Corners<'a> {
         }
     }
 
-    /// For each piece of a triangle the sides of the triangle that its sides lie on; `None` for what
-    /// the near plane cuts and for the diagonal between two pieces.
+    /// For each piece of a triangle, the sides of the triangle that its sides are on; `None` for cuts at
+    /// the near plane and for the diagonal between two pieces.
     pub fn side_sources(&self, triangle: u32) -> [[Option<usize>; 3]; 2] {
         const WHOLE: [Option<usize>; 3] = [Some(0), Some(1), Some(2)];
         let vertices = self.scene.triangles()[triangle as usize];

@@ -2,17 +2,17 @@
 //!
 //! ```text
 //!            ┌────────┐            boxes of columns, rows and depth; of two halves
-//!   ray ·····┤┌──┐    │            the nearer one first, and no box that begins
-//!            ││  │ ┌─┐│            behind what the ray has met already
+//!   ray ·····┤┌──┐    │            the nearer one first, skipping boxes that
+//!            ││  │ ┌─┐│            begin behind the nearest hit so far
 //!            └┴──┴─┴─┴┘
 //! ```
 //!
-//! In image space all rays are parallel, along the depth. Each triangle that a ray may meet is asked
-//! on its own whether it covers the center, edge by edge, so this engine shares with the others the
-//! rule, but none of what they carry from pixel to pixel.
+//! In image space all rays are parallel, along the depth. Each triangle that a ray may hit is tested
+//! separately, edge by edge, for whether it covers the center. So this engine shares the rule with the
+//! others, but nothing that they carry from pixel to pixel.
 //!
-//! Source: lecture notes on visibility (Slovak), section 2.4: a z-buffer whose parts are one pixel
-//! large. The tree halves the triangles by the middles of their boxes (Kay, Kajiya 1986).
+//! Source: lecture notes on visibility (Slovak), section 2.4: a z-buffer with tiles of one
+//! pixel. The tree halves the triangles by the centers of their boxes (Kay, Kajiya 1986).
 //! Good for: checking the others; single pixels.
 //!
 //! Coherence: object coherence (boxes stand for triangles); none from pixel to pixel.
@@ -44,10 +44,10 @@ struct RayNode {
     low: DVec2,
     high: DVec2,
     nearest: Depth,
-    /// The part of the triangles that it holds.
+    /// The triangles in it.
     from: u32,
     to: u32,
-    /// The second half's node, the first's being the next; 0 for a leaf.
+    /// The node of the second half; the first half follows this node. 0 for a leaf.
     second: u32,
 }
 
@@ -76,7 +76,7 @@ impl RayTree {
             (low, high) = (low.min(own_low), high.max(own_high));
             let corners = triangle.corners.map(|corner| triangle.plane.nearness_at(corner));
             let largest = corners[0].max(corners[1]).max(corners[2]);
-            // Inside, rounding may make it a little nearer than at the corners.
+            // Inside, rounding may make it slightly nearer than at the corners.
             nearest = nearest.max(Depth::of(largest).next_nearer());
         }
         let own = self.nodes.len();
@@ -97,7 +97,7 @@ impl RayTree {
         own as u32
     }
 
-    /// The triangle that a ray meets first.
+    /// The triangle that a ray hits first.
     fn nearest(&self, column: u32, row: u32) -> Option<u32> {
         let point = DVec2::new(center(column), center(row));
         let mut best: Option<(Depth, u32)> = None;

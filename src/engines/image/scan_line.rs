@@ -3,11 +3,11 @@
 //! ```text
 //!   row by row: which triangles reach it?          ──A────────A──    pairs of edges, unsorted
 //!     for each of them, its columns a..b              ──B───B──
-//!       nearer than what is kept? keep it          depth of one row, cleared for the next
+//!       nearer than the one kept? keep it          depth of one row, cleared for the next
 //! ```
 //!
-//! Source: lecture notes on visibility (Slovak), section 2.2: the loops of the z-buffer change
-//! places; the pairs of edges are those of the German notes' scan-line z-buffer.
+//! Source: lecture notes on visibility (Slovak), section 2.2: the loops of the z-buffer are
+//! swapped; the pairs of edges are those of the scan-line z-buffer in the German notes.
 //! Good for: pictures of any height with the memory of one row.
 //!
 //! Coherence: face coherence along a row, and scan-line coherence (triangles are kept from row to row).
@@ -39,7 +39,7 @@ pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
             for column in columns(edges, row, width) {
                 let at = column as usize;
                 let depth = depth.at(column);
-                // They are in no order here, so equal depths are told apart by number.
+                // They are unordered here, so numbers break ties between equal depths.
                 if depth > depths[at] || depth == depths[at] && *number < items[at] {
                     (depths[at], items[at]) = (depth, *number);
                 }

@@ -3,15 +3,14 @@
 //! ```text
 //!   edges by column   A├──────────┤A            in/out flags   A: 1 1 1 0
 //!                         B├──────────────┤B                   B: 0 1 1 1
-//!   spans             │ 1  │  2  │   3    │     in each: whatever is nearest at both ends
-//!                                               is nearest all along; else it is divided
+//!   spans             │ 1  │  2  │   3    │     in each: what is nearest at both ends is
+//!                                               nearest all along; otherwise it is divided
 //!                                               where the two are equally near
 //! ```
 //!
 //! Edge table, polygon table with the planes (the raster) and an in/out flag for each triangle.
-//! Within a span every triangle's nearness changes evenly, so the nearest's, being the largest of them,
-//! is convex from below: one triangle that is nearest at both ends is nearest throughout. This lets
-//! triangles cross, which the textbook excludes.
+//! Within a span each triangle's nearness is linear, so a triangle that is nearest at both ends is nearest
+//! throughout. So triangles may cross, which the textbook excludes.
 //!
 //! Source: lecture notes on visibility (Slovak), section 2.3; German notes, "Spanning Scan Line":
 //! edge table, polygon table, flags. Bouknight 1970.
@@ -59,7 +58,7 @@ struct Inside {
 
 /// The nearest triangle in a column, of those inside.
 fn nearest(inside: &[Inside], column: u32) -> Option<&Inside> {
-    // The lowest number counts as the nearest of several.
+    // Of several equally near, the lowest number counts as nearest.
     inside.iter().max_by_key(|inside| (inside.depth.at(column), std::cmp::Reverse(inside.number)))
 }
 

@@ -5,15 +5,15 @@
 //!   A   edges that meet this row, by column      A┤    C┤   ┊    A├   C├
 //!   H   triangles inside, nearest first           A   A C  C A    C    ·
 //!                                                          ┊
-//!            the artificial edge, where C and A change places in H
+//!            the artificial edge, where C and A swap places in H
 //! ```
 //!
-//! Meeting an edge, its triangle enters H or leaves it; the first of H is seen up to the next edge.
-//! Where another triangle would overtake the first of H before that edge, the faces cross there: an
-//! artificial edge is set in that column, and the row goes on from it. So no pixel is written twice.
+//! At each edge its triangle enters or leaves H; the first of H is seen up to the next edge. If another
+//! triangle would overtake the first of H before that edge, the faces cross there: an artificial edge is
+//! placed in that column, and the row continues from it. So no pixel is written twice.
 //!
 //! Source: lecture slides on Watkins' algorithm (Czech), steps 1–6 and "intersection of two faces".
-//! Deviation: back faces stay, since an open sheet may show its back. Watkins 1970.
+//! Deviation: back faces are kept, since an open sheet may show its back. Watkins 1970.
 //! Good for: pictures that are written row by row, and costly shading: each pixel is shaded once.
 //!
 //! Coherence: face coherence (one triangle fills the columns up to the next edge), edge and scan-line
@@ -82,7 +82,7 @@ fn run(in_front: &mut [Entry], from: u32, to: u32, items: &mut [u32]) {
 /// `first`.
 fn overtakes(first: &Entry, other: &Entry, from: u32, to: u32) -> Option<u32> {
     let is_before = |column: u32| other.order(column) < first.order(column);
-    // Nearness changes evenly, so what is not before at the end never was.
+    // Nearness is linear, so a triangle that is not in front at the end never was.
     if !is_before(to - 1) {
         return None;
     }

@@ -3,12 +3,12 @@
 //! ```text
 //!   for every triangle                        depth  0 0 3 3 3 0      5 is nearer than 3
 //!     for every row, its columns a..b         item   · · A A A ·
-//!       nearer than what is kept? keep it     with B 0 5 5 5 3 0  →   · B B B A ·
+//!       nearer than the one kept? keep it     with B 0 5 5 5 3 0  →   · B B B A ·
 //! ```
 //!
-//! Source: lecture notes on visibility (Slovak), section 2.1, with its finer steps: row by row the
-//! ends of each triangle's part, in between depth by steps. Catmull 1974.
-//! Good for: any scene; the cost hardly depends on how the triangles lie. Keeps a strip of depths.
+//! Source: lecture notes on visibility (Slovak), section 2.1, refined: the ends of each
+//! triangle's span row by row, and depth by steps between them. Catmull 1974.
+//! Good for: any scene; the cost hardly depends on where the triangles are. Keeps a strip of depths.
 //!
 //! Coherence: face coherence (depth changes evenly over a triangle).
 
@@ -29,7 +29,7 @@ pub fn solve(raster: &Raster, strip: &RowStrip, items: &mut [u32]) {
             let depth = triangle.plane.row(row);
             for ((column, kept), item) in columns.zip(&mut depths[at.clone()]).zip(&mut items[at]) {
                 let depth = depth.at(column);
-                // Triangles come by number, so at equal depths the lowest stays.
+                // Triangles come in order of number, so at equal depths the lowest stays.
                 if depth > *kept {
                     (*kept, *item) = (depth, number);
                 }

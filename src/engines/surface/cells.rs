@@ -1,4 +1,4 @@
-//! The cells of one part of a grid, from the eye outwards.
+//! The cells of one part of a grid, from the eye outward.
 //!
 //! ```text
 //!   left ─────── far        The part is reflected so that the eye is at the lower left:
@@ -25,17 +25,17 @@ impl Samples for Grid {
 /// One part of the domain: the lines of the grid by their distance from the eye.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct GridPart {
-    /// Columns of the grid, the nearest first; the first may lie behind the eye's x.
+    /// Columns of the grid, the nearest first; the first may be behind the eye's x.
     pub(super) columns: Vec<u32>,
-    /// Rows of the grid, the nearest first; the first may lie behind the eye's y.
+    /// Rows of the grid, the nearest first; the first may be behind the eye's y.
     pub(super) rows: Vec<u32>,
     /// Signs that reflect the part.
     pub(super) sx: f64,
     /// See `sx`.
     pub(super) sy: f64,
-    /// Where the first column lies.
+    /// Where the first column is.
     pub(super) first_column: First,
-    /// Where the first row lies.
+    /// Where the first row is.
     pub(super) first_row: First,
     /// Edges along y are all radial (orthographic).
     pub(super) radial_columns: bool,
@@ -43,7 +43,7 @@ pub(super) struct GridPart {
     pub(super) radial_rows: bool,
 }
 
-/// Where the nearest line of a part lies.
+/// Where the nearest line of a part is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum First {
     /// Beyond the eye: the edges along it are the nearest of the part.
@@ -108,8 +108,8 @@ struct Row {
 }
 
 impl Row {
-    /// Holds `columns`, as far as possible from `known`, which is of the same row of the grid or
-    /// empty.
+    /// The vertices of `columns`, taken from `known` where possible, which is of the same row of the grid
+    /// or empty.
     fn fill(
         &mut self,
         known: &Self,
@@ -139,7 +139,7 @@ impl CellWalk<'_, '_, '_> {
     fn rows(&mut self) {
         let (n_columns, n_rows) = self.part.cells();
         let first = usize::from(self.part.first_column == First::Behind);
-        // Rounded u can only make the range a little too wide; segments are cut exactly.
+        // Rounding of u can only make the range slightly too wide; segments are cut exactly.
         let margin = 4.0 * self.strip.plane.du;
         let (from, to) = (self.strip.from - margin, self.strip.to + margin);
         let (mut near, mut far) = (Row::default(), Row::default());
@@ -161,7 +161,7 @@ impl CellWalk<'_, '_, '_> {
             while end < n_columns && vertex(end, r + 1).u <= to {
                 end += 1;
             }
-            // The far vertices of the row before are the near ones of this row.
+            // The far vertices of the previous row are the near ones of this row.
             near.fill(&far, begin..end + 1, |c| vertex(c, r));
             far.fill(&Row::default(), begin..end + 1, |c| vertex(c, r + 1));
             let diagonal = self.part.diagonal();
@@ -248,8 +248,8 @@ impl CellWalk<'_, '_, '_> {
         }
     }
 
-    /// Tests the radial edges of a cell before the cell hides anything. An edge on the border of the
-    /// domain has nothing beside it on the outer side, so it is wholly visible.
+    /// Tests the radial edges of a cell before the cell hides anything. An edge on the border of the domain
+    /// has no cell on its outer side, so it is wholly visible.
     fn radial_edges(&mut self, c: usize, r: usize, cell: &Cell) {
         let Cell { near, right, left, far, .. } = *cell;
         let (part, grid, cells) = (self.part, self.grid, self.part.cells());
@@ -278,13 +278,13 @@ impl CellWalk<'_, '_, '_> {
         }
     }
 
-    /// A cell that the border of the part cuts.
+    /// A cell cut by the border of the part.
     fn cut_cell(&mut self, c: usize, r: usize) {
         let (part, grid) = (self.part, self.grid);
         let [near, right, left, far] =
             [(c, r), (c + 1, r), (c, r + 1), (c + 1, r + 1)].map(|(c, r)| self.id(c, r));
         let strip = &mut *self.strip;
-        let centre = strip.plane.sight.centre;
+        let center = strip.plane.sight.center;
         if c == 0 && part.first_column != First::Behind {
             let edge = part.y_edge(grid, c, r);
             let (from, to) = (grid.point(near).y, grid.point(left).y);
@@ -295,7 +295,7 @@ impl CellWalk<'_, '_, '_> {
                         (near, left),
                         edge,
                         true,
-                        Some((centre.y - from) / (to - from)),
+                        Some((center.y - from) / (to - from)),
                     );
                 }
                 _ => strip.draw_clipped(left, near, edge),
@@ -311,7 +311,7 @@ impl CellWalk<'_, '_, '_> {
                         (near, right),
                         edge,
                         false,
-                        Some((centre.x - from) / (to - from)),
+                        Some((center.x - from) / (to - from)),
                     );
                 }
                 _ => strip.draw_clipped(near, right, edge),

@@ -2,9 +2,9 @@
 //!
 //! Lines are taken nearest first. A point of a line is visible when its height in the auxiliary
 //! vertical plane (see [`super::max_min`]) is at least the highest, or at most the lowest, of all
-//! nearer lines of the family at the same u. Nothing else hides: the surface between the lines is
-//! taken to be transparent, so the picture of a rough surface differs from that of [`super::max_min`],
-//! and two families drawn so do not fit together.
+//! nearer lines of the family at the same u. Nothing else hides: the surface between the lines counts as
+//! transparent, so the picture of a rough surface differs from that of [`super::max_min`], and two
+//! families drawn this way do not match.
 //!
 //! ```text
 //!   v ▲   ╱╲      third line: seen above the upper and below the lower horizon
@@ -13,12 +13,12 @@
 //!     └─────────► u
 //! ```
 //!
-//! Differs from the textbook method in that the horizons are exact piecewise linear functions, not
-//! arrays of pixels; a line is cut where it crosses a horizon, not judged by its ends; and the
-//! domain is split at the eye's x and y, so that the eye may stand over it. O(samples + crossings).
+//! Differs from the textbook method in three points. The horizons are exact piecewise linear functions,
+//! not arrays of pixels. A line is cut where it crosses a horizon, not judged by its ends. The domain is
+//! split at the eye's x and y, so the eye may be above it. O(samples + crossings).
 //!
-//! Coherence: scan-line coherence, with a line of the family for the scan line (a horizon is changed next
-//! to its last change), and edge coherence (visibility changes only where a line crosses a horizon).
+//! Coherence: scan-line coherence, where a line of the family is the scan line (a horizon changes next to
+//! its last change), and edge coherence (visibility changes only where a line crosses a horizon).
 
 use std::sync::atomic::AtomicU8;
 
@@ -66,12 +66,12 @@ pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces,
     }
     let status: Vec<AtomicU8> = (0..n_x_edges + n_y_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
     let (low, high) = bounds(grid);
-    let centre = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
-    let size = (high - centre).abs().max((low - centre).abs());
+    let center = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
+    let size = (high - center).abs().max((low - center).abs());
     let done: Vec<_> = parts(grid, camera)
         .par_iter()
         .map(|part| {
-            let sight = PlanSight::new(camera, part.sx, part.sy, centre);
+            let sight = PlanSight::new(camera, part.sx, part.sy, center);
             let plane = HorizonPlane::new(grid, sight, size);
             let reach = 4.0 * plane.reach();
             let range = if perspective { (-1.0, 1.0) } else { (-reach, reach) };

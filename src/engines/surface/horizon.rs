@@ -2,16 +2,16 @@
 //!
 //! ```text
 //!   v ▲        ╱╲   piece = part of one input segment
-//!     │  ╲    ╱  ╲        ┌────   break = where one piece gives way to the next: at the u of a
+//!     │  ╲    ╱  ╲        ┌────   break = where one piece ends and the next begins: at the u of a
 //!     │   ╲  ╱    ╲   ╱───┘               sample, at the crossing of two segments, or at the
 //!     │    ╲╱      ╲╱                     border of the strip
 //!     └────────────────────────► u
 //! ```
 //!
-//! A horizon is kept in two stacks that meet at a finger, so that adding a segment near the one
-//! before costs what it touches. Pieces and breaks name the samples they come from; the rounded
-//! numbers beside them carry proven error bounds and only ever filter: where they cannot decide, the
-//! samples themselves do, exactly.
+//! A horizon is kept in two stacks that meet at a finger, so adding a segment near the previous one costs
+//! only what it touches. Pieces and breaks name the samples they come from. The rounded numbers beside
+//! them have proven error bounds and serve only as a filter: where they cannot decide, the samples do,
+//! exactly.
 
 mod advance;
 mod breaks;
@@ -35,7 +35,7 @@ struct HorizonPiece {
 pub struct HorizonCounts {
     /// Pieces of horizons that a segment was compared with.
     pub comparisons: u64,
-    /// Decisions that rounded numbers could not make.
+    /// Decisions that rounded numbers left open.
     pub exact: u64,
 }
 
@@ -80,8 +80,8 @@ impl Horizon {
         }
     }
 
-    /// Whether all of a triangle or cell surely lies strictly within the horizon: then its segments
-    /// change nothing and nothing of them is seen. `from` and `to` are the least and greatest u of
+    /// Whether a whole triangle or cell is certainly strictly within the horizon: then its segments change
+    /// nothing and none is visible. `from` and `to` are the least and greatest u of
     /// its corners.
     #[inline]
     pub(super) fn encloses<S: Samples, const N: usize>(
@@ -98,12 +98,12 @@ impl Horizon {
         !heights.iter().any(|height| height.is_nan()) && self.steps.are_beyond(highest, from, to)
     }
 
-    /// What [`renew_steps`](Self::renew_steps) costs.
+    /// The cost of [`renew_steps`](Self::renew_steps).
     pub(super) fn n_parts(&self) -> usize {
         self.left.len() + self.right.len() + self.steps.len()
     }
 
-    /// Finds anew what the horizon is surely beyond.
+    /// Updates the steps that the horizon is certainly beyond.
     pub(super) fn renew_steps(&mut self) {
         let Self { left, right, steps, up, border, .. } = self;
         steps.raise();
@@ -114,7 +114,7 @@ impl Horizon {
             let height = if line.is_empty() {
                 f64::NEG_INFINITY
             } else {
-                // Errors twice, which covers the rounding of this sum.
+                // Twice the error covers the rounding of this sum.
                 let sway = line.slope.abs() * (from_error + to_error);
                 (line.at(from) * *up).min(line.at(to) * *up) - 2.0 * (line.error + sway)
             };
@@ -122,7 +122,7 @@ impl Horizon {
         }
     }
 
-    /// Adds a segment, and reports the runs of it that lie on or beyond the horizon as it was.
+    /// Adds a segment, and reports the runs of it that are on or beyond the horizon as it was before.
     #[inline]
     pub(super) fn add<S: Samples>(
         &mut self,
@@ -245,9 +245,9 @@ impl Horizon {
         }
     }
 
-    /// Whether the segment certainly lies strictly within the horizon, as most do: then it changes
-    /// nothing and nothing of it is seen. Rounded numbers only; what they leave open is false. The
-    /// finger is where `seek` puts it.
+    /// Whether the segment is certainly strictly within the horizon, as most are: then it changes nothing
+    /// and is not visible. Uses rounded numbers only; false if they leave it open. The finger is where
+    /// `seek` puts it.
     #[inline]
     fn is_inside<S: Samples>(&mut self, plane: &HorizonPlane<S>, s: &HorizonSegment) -> bool {
         if s.left == End::Border || s.right == End::Border {
@@ -333,9 +333,9 @@ impl Horizon {
         found
     }
 
-    /// Which part of a radial segment lies beyond the horizon, as a range of 0..1 from its near end
+    /// Which part of a radial segment is beyond the horizon, as a range of 0..1 from its near end
     /// to its far end. Both ends are at the same u, or the near end is right below or above the
-    /// eye; the horizon counts as it is just beside that u, on the given side.
+    /// eye; the horizon is taken just beside that u, on the given side.
     pub(super) fn radial<S: Samples>(
         &mut self,
         plane: &HorizonPlane<S>,

@@ -1,27 +1,26 @@
 //! Max-Min patches (Vega-Páez, Ortega & Pulido 2008): both families of grid lines, hidden by the
 //! surface between them.
 //!
-//! Two points of a surface z = f(x, y) can only hide each other when they lie in one vertical plane
-//! through the eye, the nearer one the nearer in plan too. So cells are visited from the eye
-//! outwards, and in a picture on a *vertical* plane the region covered so far lies between two
-//! functions of u, the lowest and the highest line seen: the horizons. What is at or beyond either
-//! is visible.
+//! Two points of a surface z = f(x, y) can hide each other only if they are in one vertical plane through
+//! the eye, and the one that hides is nearer in plan too. So cells are visited from the eye outward. In a
+//! picture on a *vertical* plane, the region covered so far is bounded by two functions of u, the lowest
+//! and the highest line seen: the horizons. Points on or beyond either are visible.
 //!
 //! ```text
 //!          ┌────┬────┬────┐      the domain is split at the eye's x and y into up to four parts;
 //!          │ -+ ┆ ++ │    │      in each, with dx, dy ≥ 0 after reflection,
 //!          ├────┼┄┄┄┄┼────┤         u = (dx − dy)/(dx + dy)   to the right
-//!          │ -- ● +- │    │         v = dz/(dx + dy)          upwards
+//!          │ -- ● +- │    │         v = dz/(dx + dy)          upward
 //!          └────┴────┴────┘      ● the eye's foot
 //! ```
 //!
-//! For each cell: the diagonal along which it is cut hides; then the two far edges are tested and
-//! hide in turn. An edge in the vertical plane of the eye is tested beside its plane, from the cells
+//! For each cell, the diagonal along which it is cut hides first; then the two far edges are tested, and
+//! hide in turn. An edge in the vertical plane of the eye is tested just beside that plane, from the cells
 //! on both sides, and hides nothing.
 //!
-//! Differs from the paper in these points. Visible is at or beyond a horizon, not on it. An edge is
-//! cut wherever it crosses a horizon, not judged by its ends. The auxiliary picture plane is vertical,
-//! because on a tilted one the region covered in a column need not be an interval. The diagonal
+//! Differs from the paper in these points. Points on or beyond a horizon are visible, not only points on
+//! it. An edge is cut wherever it crosses a horizon, not judged by its ends. The auxiliary picture plane is
+//! vertical, because on a tilted one the region covered in a column need not be an interval. The diagonal
 //! hides. The main edges are tested like all others. Every comparison is exact.
 //!
 //! Growth, measured on sinc r over ±12 from the default viewpoint, two threads on busy cores:
@@ -33,13 +32,13 @@
 //! | 1000² | 3,121,527 | 3.1 | 1,359 | 0.17 |
 //! | 3000² | 26,393,506 | 2.9 | 4,084 | 0.80 |
 //!
-//! Comparisons grow with the samples to the power 0.95, time to the power 0.77. Two shortcuts keep
-//! them few: a cell well within a horizon is passed over (see `steps`), and a cell whose near edges
-//! are the horizon hands it on to its far edges (see `horizon::advance`).
+//! The number of comparisons grows as the number of samples to the power 0.95, time to the power 0.77. Two
+//! shortcuts keep it low: a cell well within a horizon is skipped (see `steps`), and where the near edges
+//! of a cell are the horizon, its far edges replace them (see `horizon::advance`).
 //!
-//! Coherence: object coherence (the order in plan settles depth once for each view) and edge coherence
-//! (in the order of rows each cell changes the horizon next to where the last one did). O(samples + crossings); memory beside the result is one row and two horizons for
-//! each strip.
+//! Coherence: object coherence (the order in plan determines depth once for each view) and edge coherence
+//! (in row order, each cell changes the horizon next to the previous change). O(samples + crossings).
+//! Memory, besides the result: one row and two horizons for each strip.
 
 use std::cmp::Ordering;
 use std::sync::atomic::AtomicU8;
@@ -66,9 +65,9 @@ const CELLS_PER_STRIP: usize = 10_000;
 /// Most strips of one part.
 const MAX_STRIPS: usize = 16;
 
-/// Whether no part of the surface lies in front of the eye and nearer than the near plane: such a
-/// part is cut off and must not hide, so a surface with one is for a mesh engine. Parts behind the
-/// eye hide nothing. O(samples) at worst, O(1) for an eye that looks at all of it from afar.
+/// Whether no part of the surface is in front of the eye but nearer than the near plane: such a part is cut
+/// off and must not hide, so a surface with one needs a mesh engine. Parts behind the eye hide nothing.
+/// O(samples) at worst, O(1) if the eye sees all of it from afar.
 pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
     let Projection::Perspective { near, .. } = camera.projection() else {
         return true;
@@ -93,10 +92,10 @@ pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
 
 /// Finds the visible parts of all grid lines of `grid`.
 ///
-/// The surface is the triangulated grid; diagonals hide and are not drawn. The camera may stand
-/// anywhere off the surface: over the domain, beside it, below it, far away. What lies behind the
-/// eye is found too: cut it at the near plane before drawing. What lies nearer than the near plane
-/// hides too: see [`is_clear_of_near_plane`].
+/// The surface is the triangulated grid; diagonals hide and are not drawn. The camera may be anywhere off
+/// the surface: over the domain, beside it, below it, far away. Parts behind the eye are included: clip
+/// them at the near plane before drawing. Parts nearer than the near plane hide too: see
+/// [`is_clear_of_near_plane`].
 ///
 /// # Errors
 /// Holes, or an eye on the surface.
@@ -130,14 +129,14 @@ pub fn solve_in_strips(
     let status: Vec<AtomicU8> = (0..n_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
 
     let (low, high) = bounds(grid);
-    // In orthographic projection only differences matter; a centre in the middle keeps them small.
-    let centre = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
-    let size = (high - centre).abs().max((low - centre).abs());
+    // In orthographic projection only differences matter; a center in the middle keeps them small.
+    let center = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
+    let size = (high - center).abs().max((low - center).abs());
     let parts = parts(grid, camera);
     let tasks: Vec<(&GridPart, PlanSight, (f64, f64))> = parts
         .iter()
         .flat_map(|part| {
-            let sight = PlanSight::new(camera, part.sx, part.sy, centre);
+            let sight = PlanSight::new(camera, part.sx, part.sy, center);
             let n_cells = part.columns.len() * part.rows.len();
             let n_strips = n_cells / cells_per_strip.max(1);
             let ranges = strips(places(grid, part, &sight), n_strips, &sight, size);
@@ -163,8 +162,8 @@ pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {
     (DVec3::new(xs[0], ys[0], low), DVec3::new(xs[xs.len() - 1], ys[ys.len() - 1], high))
 }
 
-/// Which horizons there are, (upper, lower). With the eye over the domain one of them starts at
-/// infinity: nothing is seen from the other side.
+/// Which horizons are needed, (upper, lower). With the eye over the domain, one of them starts at infinity:
+/// nothing is seen from the other side.
 fn horizons_at_foot(grid: &Grid, eye: DVec3) -> Result<(bool, bool), HorizonError> {
     let cell = |values: &[f64], at: f64| {
         let inside = values[0] <= at && at <= values[values.len() - 1];
@@ -267,7 +266,7 @@ fn places(grid: &Grid, part: &GridPart, sight: &PlanSight) -> Vec<f64> {
     us
 }
 
-/// About so many ranges of u of about equal work that make up a part; `places` are where the work is.
+/// Divides a part into about this many ranges of u with about equal work; `places` are where the work is.
 pub(super) fn strips(
     mut places: Vec<f64>,
     n_strips: usize,

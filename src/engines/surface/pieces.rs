@@ -1,10 +1,10 @@
-//! What is visible of the lines of a grid.
+//! The visible pieces of the lines of a grid.
 
 use std::sync::atomic::AtomicU8;
 
 use super::HorizonCounts;
 
-/// Which side of the surface is seen.
+/// The side of the surface that is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SurfaceSide {
     /// Beyond the upper horizon: from above.
@@ -98,7 +98,7 @@ impl GridPieces {
         })
     }
 
-    /// Puts together what strips have done and found.
+    /// Combines the pieces and counts of strips.
     pub(super) fn of_strips(
         nx: usize,
         ny: usize,
@@ -115,7 +115,7 @@ impl GridPieces {
         Self { work, ..Self::join(nx, ny, status, found) }
     }
 
-    /// Sorts and joins what strips have found.
+    /// Sorts and joins the pieces of strips.
     pub(super) fn join(
         nx: usize,
         ny: usize,

@@ -1,13 +1,13 @@
 //! Exact decisions in the plane of horizons.
 //!
-//! A point of the surface seen from the eye is a homogeneous triple `h = (hu, hw, hv)`; it stands
-//! in the plane of horizons at `u = hu/hw`, to the right, and `v = hv/hw`, upwards. In perspective,
+//! A point of the surface seen from the eye is a homogeneous triple `h = (hu, hw, hv)`: in the plane of
+//! horizons it is at `u = hu/hw`, to the right, and `v = hv/hw`, upward. In perspective,
 //! with `d = P − eye` reflected so that the part's `dx, dy ≥ 0`, `h = (dx − dy, dx + dy, dz)`. In
 //! orthographic projection, with `d = P − c` for a fixed `c` and `m` the plan direction of view,
 //! `h = (my dx − mx dy, 1, dz m·m − fz (m·d))`. Both maps take straight lines to straight lines and
 //! verticals to verticals, and both are polynomials in the input, so each decision below is the
-//! sign of a polynomial. Floating point comes first (see [`super::horizon`]); what it cannot decide
-//! comes here, where all numbers are scaled to integers and nothing is rounded.
+//! sign of a polynomial. Floating point is tried first (see [`super::horizon`]); what it cannot decide is
+//! decided here, with all numbers scaled to integers and nothing rounded.
 
 use std::cmp::Ordering;
 
@@ -21,8 +21,8 @@ use crate::camera::{Camera, Projection};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PlanSight {
     /// The eye, or in orthographic projection any fixed point near the surface.
-    pub(super) centre: DVec3,
-    /// Signs that turn the part towards +x and +y.
+    pub(super) center: DVec3,
+    /// Signs that turn the part toward +x and +y.
     pub(super) sx: f64,
     /// See `sx`.
     pub(super) sy: f64,
@@ -40,25 +40,25 @@ pub(super) enum PlaceOnU {
 }
 
 impl PlanSight {
-    /// The sight of the part in which `sx·(x − centre.x)` and `sy·(y − centre.y)` are positive, or
+    /// The sight of the part in which `sx·(x − center.x)` and `sy·(y − center.y)` are positive, or
     /// in orthographic projection of the whole domain.
-    pub(super) fn new(camera: &Camera, sx: f64, sy: f64, centre: DVec3) -> Self {
+    pub(super) fn new(camera: &Camera, sx: f64, sy: f64, center: DVec3) -> Self {
         match camera.projection() {
-            Projection::Perspective { .. } => Self { centre: camera.eye(), sx, sy, forward: None },
+            Projection::Perspective { .. } => Self { center: camera.eye(), sx, sy, forward: None },
             Projection::Orthographic => {
                 let f = camera.forward();
                 let largest = f.abs().max_element();
                 // A power of two changes no sign and keeps products of components in range.
                 let scale = libm::exp2(-libm::floor(libm::log2(largest)).clamp(-1000.0, 1000.0));
                 let forward = DVec3::new(f.x * sx, f.y * sy, f.z) * scale;
-                Self { centre, sx, sy, forward: Some(forward) }
+                Self { center, sx, sy, forward: Some(forward) }
             }
         }
     }
 
     /// `h` of a point, rounded.
     pub(super) fn rounded(&self, p: DVec3) -> [f64; 3] {
-        let d = p - self.centre;
+        let d = p - self.center;
         let (dx, dy) = (d.x * self.sx, d.y * self.sy);
         match self.forward {
             None => [dx - dy, dx + dy, d.z],
@@ -80,13 +80,13 @@ impl PlanSight {
         sign(&(&p[0] * &q[1] - &q[0] * &p[1]))
     }
 
-    /// The order when one product is zero or both have different signs, as on lines of the grid.
+    /// The order if one product is zero or the signs differ, as on lines of the grid.
     fn order_by_products(&self, p: DVec3, q: DVec3) -> Option<Ordering> {
         let order = |a: f64, b: f64| a.partial_cmp(&b);
         let (left, right) = match self.forward {
             None => {
                 // u grows with dx/dy: the sign of dx(p) dy(q) − dx(q) dy(p), up to the factor 2.
-                let c = self.centre;
+                let c = self.center;
                 let side = |a: f64, b: f64, s: f64| order(a * s, b * s);
                 (
                     product(side(p.x, c.x, self.sx)?, side(q.y, c.y, self.sy)?),
@@ -112,7 +112,7 @@ impl PlanSight {
         let plan = |p: DVec3| coord(p.x, p.y);
         let det = match self.forward {
             None => {
-                let [p, q, c] = [p, q, self.centre].map(plan);
+                let [p, q, c] = [p, q, self.center].map(plan);
                 if ![p, q, c].iter().all(|p| in_window(p.x) && in_window(p.y)) {
                     return None;
                 }
@@ -196,7 +196,7 @@ impl PlanSight {
         times(sign(&dot(&cross(&a, &b), &w)), sign(&w[1]))
     }
 
-    /// The u at which two lines cross, correct to the last place or so.
+    /// The u at which two lines cross, correct to about the last digit.
     pub(super) fn crossing_u(&self, first: [DVec3; 2], second: [DVec3; 2]) -> f64 {
         let points = [first[0], first[1], second[0], second[1]];
         let scaled = self.scaled(&points, &[]);
@@ -208,8 +208,7 @@ impl PlanSight {
         libm::ldexp(ratio(&w[0], &w[1]), unit.clamp(-3000, 3000) as i32)
     }
 
-    /// How far along the way from `p` to `q`, as a part of it, a place is passed; correct to the last
-    /// place or so.
+    /// Where on the way from `p` to `q` a place is passed, as a fraction; correct to about the last digit.
     pub(super) fn way_to_place(&self, [p, q]: [DVec3; 2], place: PlaceOnU) -> f64 {
         let scaled = self.scaled(&[p, q], &[place]);
         let ([p, q], [w]) = (&scaled.0[..], &scaled.1[..]) else {
@@ -219,14 +218,14 @@ impl PlanSight {
         way(&passed(p), &passed(q))
     }
 
-    /// The same for where the way leads over or under a line.
+    /// The same, for where the way passes over or under a line.
     pub(super) fn way_to_line(&self, [p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> f64 {
         let [p, q, a, b] = self.exact([p, q, a, b]);
         let normal = cross(&a, &b);
         way(&dot(&normal, &p), &dot(&normal, &q))
     }
 
-    /// The same for the u at which two lines cross.
+    /// The same, for the u at which two lines cross.
     pub(super) fn way_to_crossing(
         &self,
         [p, q]: [DVec3; 2],
@@ -244,14 +243,14 @@ impl PlanSight {
         std::array::from_fn(|_| triples.next().unwrap_or([IBig::ZERO; 3]))
     }
 
-    /// Exact triples of points and places in one scale, and the power of two of the unit of u in
+    /// Exact triples of points and places at a common scale, and the power of two of the unit of u in
     /// orthographic projection.
     fn scaled(&self, points: &[DVec3], places: &[PlaceOnU]) -> (Vec<Triple>, Vec<Triple>, i64) {
         let vertices = places.iter().filter_map(|place| match place {
             PlaceOnU::Vertex(p) => Some(*p),
             PlaceOnU::Border(_) => None,
         });
-        let all = points.iter().copied().chain(vertices).chain([self.centre]);
+        let all = points.iter().copied().chain(vertices).chain([self.center]);
         let unit = all.flat_map(|p| p.to_array()).filter_map(exponent).min().unwrap_or(0);
         let f_unit = self
             .forward
@@ -279,9 +278,9 @@ impl PlanSight {
     fn triple(&self, p: DVec3, unit: i64, f_unit: i64) -> Triple {
         let d = |p: f64, c: f64| integer(p, unit) - integer(c, unit);
         let reflected = |d: IBig, s: f64| if s < 0.0 { -d } else { d };
-        let dx = reflected(d(p.x, self.centre.x), self.sx);
-        let dy = reflected(d(p.y, self.centre.y), self.sy);
-        let dz = d(p.z, self.centre.z);
+        let dx = reflected(d(p.x, self.center.x), self.sx);
+        let dy = reflected(d(p.y, self.center.y), self.sy);
+        let dz = d(p.z, self.center.z);
         match self.forward {
             None => [&dx - &dy, dx + dy, dz],
             Some(f) => {
@@ -293,12 +292,12 @@ impl PlanSight {
     }
 }
 
-/// Where what changes evenly from `p` to `q` is zero, as a part of the way.
+/// Where a linear function with values `p` and `q` at the ends is zero, as a fraction of the way.
 fn way(p: &IBig, q: &IBig) -> f64 {
     ratio(p, &(p - q))
 }
 
-/// A quotient, correct to the last place or so; 0 when the divisor is.
+/// A quotient, correct to about the last digit; 0 if the divisor is.
 fn ratio(numerator: &IBig, denominator: &IBig) -> f64 {
     if *denominator == IBig::ZERO {
         return 0.0;
@@ -310,7 +309,7 @@ fn ratio(numerator: &IBig, denominator: &IBig) -> f64 {
     libm::ldexp(quotient.to_f64().value(), -(shift.min(3000) as i32))
 }
 
-/// On which side of the plane through `a`, `b` and `c` a point lies: `Greater` when `a`, `b`, `c` turn
+/// On which side of the plane through `a`, `b` and `c` a point is: `Greater` when `a`, `b`, `c` turn
 /// counter-clockwise in plan and the point is above.
 pub(super) fn over_plane(p: DVec3, a: DVec3, b: DVec3, c: DVec3) -> Ordering {
     let unit =
@@ -417,7 +416,7 @@ mod tests {
     #[test]
     fn the_place_of_a_crossing_does_not_depend_on_the_order_of_its_lines() {
         // Seen along y, u is x and v is z.
-        let sight = PlanSight { centre: DVec3::ZERO, sx: 1.0, sy: 1.0, forward: Some(DVec3::Y) };
+        let sight = PlanSight { center: DVec3::ZERO, sx: 1.0, sy: 1.0, forward: Some(DVec3::Y) };
         let at = |x: f64, z: f64| DVec3::new(x, x, z);
         let (rising, falling) = ([at(0.0, 0.0), at(2.0, 2.0)], [at(0.0, 2.0), at(2.0, 0.0)]);
         for (x, expected) in

@@ -12,17 +12,17 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Half the distance from 1 to the next number.
 pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// Crossings whose u is not known to this are found again in integers. It bears on where a stroke
-/// ends, never on what is visible.
+/// Crossings whose u is less accurate than this are computed again in integers. It affects where a stroke
+/// ends, never what is visible.
 pub(super) const CROSSING_PRECISION: f64 = 1e-13;
 
-/// Where pieces end on edges is found again in integers where it is not known to this part of the
-/// edge. It bears on where a stroke ends, never on what is visible.
+/// Ends of pieces that are less accurate than this fraction of the edge are computed again in integers. It
+/// affects where a stroke ends, never what is visible.
 pub(super) const PLACE_PRECISION: f64 = 1e-10;
 
 /// Samples by number.
 pub(super) trait Samples: Sync {
-    /// Where a sample stands.
+    /// Where a sample is.
     fn point(&self, sample: u32) -> DVec3;
 }
 
@@ -61,7 +61,7 @@ pub(super) enum Diagonal {
     LeftToRight,
 }
 
-/// The samples, how they are seen, and how far rounded u and v may be from the truth.
+/// The samples, how they are seen, and the error bounds of rounded u and v.
 pub(super) struct HorizonPlane<'a, S: Samples> {
     pub(super) samples: &'a S,
     pub(super) sight: PlanSight,
@@ -74,11 +74,11 @@ pub(super) struct HorizonPlane<'a, S: Samples> {
 }
 
 impl<'a, S: Samples> HorizonPlane<'a, S> {
-    /// `size` bounds |x|, |y| and |z| of all samples less the sight's centre.
+    /// `size` bounds |x|, |y| and |z| of all samples minus the sight's center.
     pub(super) fn new(samples: &'a S, sight: PlanSight, size: DVec3) -> Self {
         match sight.forward {
-            // dx, dy, dz are off by one rounding each, their sum and difference by two relative to
-            // the sum, which is not less than the difference; the quotients add one.
+            // dx, dy and dz have one rounding each, their sum and difference two, relative to the sum,
+            // which is not less than the difference; the quotients add one.
             None => Self {
                 samples,
                 sight,
@@ -102,7 +102,7 @@ impl<'a, S: Samples> HorizonPlane<'a, S> {
         }
     }
 
-    /// A number that |u| of no sample exceeds; 0 to within rounding only when all are 0.
+    /// An upper bound on |u| of all samples; 0 to within rounding only if all are 0.
     pub(super) fn reach(&self) -> f64 {
         self.du / UNIT
     }
@@ -120,7 +120,7 @@ impl<'a, S: Samples> HorizonPlane<'a, S> {
         self.dv_relative * v.abs() + self.dv
     }
 
-    /// Where `a` lies along u compared with `b`.
+    /// Whether `a` is left or right of `b` along u.
     pub(super) fn order(&self, a: HorizonVertex, b: HorizonVertex) -> Ordering {
         if a.id == b.id {
             return Ordering::Equal;
@@ -129,15 +129,15 @@ impl<'a, S: Samples> HorizonPlane<'a, S> {
             .unwrap_or_else(|| self.sight.order(self.point(a.id), self.point(b.id)))
     }
 
-    /// Where `a` lies compared with a border.
+    /// Whether `a` is left or right of a border.
     pub(super) fn order_to_border(&self, a: HorizonVertex, u: f64) -> Ordering {
         filtered(a.u - u, self.du)
             .unwrap_or_else(|| self.sight.order_to_border(self.point(a.id), u))
     }
 }
 
-/// The sign of a rounded number, if it is further from zero than its error. The bound is taken
-/// twice, which covers the rounding of the bound and of the last difference.
+/// The sign of a rounded number, if it is farther from zero than its error. Twice the bound covers the
+/// rounding of the bound and of the last difference.
 pub(super) fn filtered(value: f64, error: f64) -> Option<Ordering> {
     if value > 2.0 * error {
         Some(Ordering::Greater)
@@ -223,20 +223,20 @@ impl HorizonSegment {
     }
 
     fn set_slope(&mut self, width: f64, v_error: f64, du: f64) {
-        // Below this the ends' errors in u are no longer small against their distance.
+        // Below this the errors of the ends' u are no longer small compared with their distance.
         if width > 64.0 * du {
             let line = &mut self.line;
             line.slope = (line.vb - line.va) / width;
-            // An error of du at either end tilts the line by as much as du times its slope, a
-            // little more to second order; evaluation rounds four times.
+            // An error of du at either end shifts the line by up to du times its slope, slightly more
+            // to second order; evaluation rounds four times.
             line.error = 2.0 * v_error
                 + 6.0 * du * line.slope.abs()
                 + 8.0 * UNIT * (line.va.abs() + line.vb.abs());
         }
     }
 
-    /// A segment of which an end may lie outside the part that `dx, dy ≥ 0` bounds; there it ends at
-    /// the part's border, u = −1 or 1. `a` is to the left of `b` as seen from the eye.
+    /// A segment with an end that may be outside the part bounded by `dx, dy ≥ 0`; it then ends at the
+    /// part's border, u = −1 or 1. `a` is to the left of `b` as seen from the eye.
     pub(super) fn clipped<S: Samples>(
         plane: &HorizonPlane<S>,
         (a, left): (u32, End),
@@ -244,7 +244,7 @@ impl HorizonSegment {
     ) -> Self {
         let sight = &plane.sight;
         let d = |id: u32| {
-            let d = plane.point(id) - sight.centre;
+            let d = plane.point(id) - sight.center;
             DVec3::new(d.x * sight.sx, d.y * sight.sy, d.z)
         };
         let (da, db) = (d(a), d(b));

@@ -1,4 +1,4 @@
-//! A step function that a horizon is surely beyond, to pass over what is well inside it.
+//! A step function that a horizon is certainly beyond, to skip what is well inside it.
 //!
 //! ```text
 //!   v ▲     ╱╲            horizon (upper)

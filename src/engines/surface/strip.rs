@@ -18,9 +18,9 @@ pub(super) struct HorizonStrip<'a, S: Samples> {
     pub(super) plane: HorizonPlane<'a, S>,
     pub(super) from: f64,
     pub(super) to: f64,
-    /// Absent when the eye stands below the surface within the domain: all is below it.
+    /// Absent if the eye is below the surface within the domain: all is below it.
     upper: Option<Horizon>,
-    /// Absent when the eye stands above the surface within the domain.
+    /// Absent if the eye is above the surface within the domain.
     lower: Option<Horizon>,
     /// Whether there is nothing to do with the upper, the lower horizon in the cell that is visited.
     is_settled: [bool; 2],
@@ -96,7 +96,7 @@ impl<'a, S: Samples> HorizonStrip<'a, S> {
             Ordering::Greater => (b, a),
         };
         let outside =
-            |id: u32, s: f64, at: fn(DVec3) -> f64| at(point(id)) * s < at(sight.centre) * s;
+            |id: u32, s: f64, at: fn(DVec3) -> f64| at(point(id)) * s < at(sight.center) * s;
         let out = |id: u32| outside(id, sight.sx, |p| p.x) || outside(id, sight.sy, |p| p.y);
         let (a_out, b_out) = (out(a), out(b));
         // Both outside, it passes through the part only from beyond x, on the left, to beyond y.
@@ -319,11 +319,11 @@ fn place<S: Samples>(
         Stop::Border(u) if plane.sight.forward.is_none() && (u == -1.0 || u == 1.0) => {
             // Both parts beside this border must find the same number.
             let k = usize::from(u > 0.0);
-            let centre = plane.sight.centre[k];
-            return (centre - first[k]) / ((centre - first[k]) + (last[k] - centre));
+            let center = plane.sight.center[k];
+            return (center - first[k]) / ((center - first[k]) + (last[k] - center));
         }
         Stop::Inside(at) => {
-            // On an edge nearly in the vertical plane of the eye u tells little.
+            // On an edge nearly in the vertical plane of the eye, u hardly changes.
             let width = segment.ub - segment.line.ua;
             if at.error + 2.0 * plane.du > PLACE_PRECISION * width {
                 return exact_place(plane, [first, last], segment, at).clamp(0.0, 1.0);

@@ -105,10 +105,10 @@ fn is_clear_of_near_plane(view: &ViewedScene) -> bool {
     view.scene().triangles().par_iter().all(is_clear)
 }
 
-/// How the eye stands to a side of a triangle, in plan.
+/// Where the eye is relative to a side of a triangle, in plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Facing {
-    /// Beyond it: the triangle lies behind this side.
+    /// Beyond it: the triangle is behind this side.
     Near,
     /// On the triangle's side of it.
     Far,
@@ -119,13 +119,13 @@ enum Facing {
 /// A triangulated surface as one camera sees it.
 struct Tin<'a> {
     scene: &'a Scene,
-    /// For each triangle its edges and how the eye stands to them, from its first corner on.
+    /// For each triangle its edges and where the eye is relative to them, from its first corner on.
     sides: Vec<[(u32, Facing); 3]>,
     /// The triangles from the eye outwards.
     order: Vec<u32>,
     camera: Camera,
     /// The eye, or a fixed point in the middle.
-    centre: DVec3,
+    center: DVec3,
     /// Greatest distance of a vertex from it along each axis.
     size: DVec3,
     is_perspective: bool,
@@ -142,11 +142,11 @@ impl<'a> Tin<'a> {
     fn new(scene: &'a Scene, camera: &Camera) -> Option<Self> {
         let is_perspective = matches!(camera.projection(), Projection::Perspective { .. });
         let (low, high) = scene.mesh().bounds()?;
-        let centre = if is_perspective { camera.eye() } else { low + 0.5 * (high - low) };
-        let size = (high - centre).abs().max((low - centre).abs());
+        let center = if is_perspective { camera.eye() } else { low + 0.5 * (high - low) };
+        let size = (high - center).abs().max((low - center).abs());
         let positions = scene.mesh().positions();
         let (sx, sy) = signs(camera);
-        let sight = PlanSight::new(camera, sx, sy, centre);
+        let sight = PlanSight::new(camera, sx, sy, center);
         let eye = camera.eye().truncate();
         let facing = |a: u32, b: u32| {
             let [a, b] = [a, b].map(|v| positions[v as usize]);
@@ -175,7 +175,7 @@ impl<'a> Tin<'a> {
             })
             .collect();
         let order = outwards(scene, &sides)?;
-        Some(Self { scene, sides, order, camera: *camera, centre, size, is_perspective })
+        Some(Self { scene, sides, order, camera: *camera, center, size, is_perspective })
     }
 
     /// Which horizons each sheet is tested against, (upper, lower). `None` with the eye on the surface
@@ -273,7 +273,7 @@ fn sweep(tin: &Tin, sheets: &Sheets, triangles_per_strip: usize) -> Option<GridP
     let mut pieces = Vec::new();
     let mut work = HorizonCounts::default();
     for (sx, sy) in reflections {
-        let sight = PlanSight::new(&tin.camera, sx, sy, tin.centre);
+        let sight = PlanSight::new(&tin.camera, sx, sy, tin.center);
         let plane = HorizonPlane::new(tin, sight, tin.size);
         let n_vertices = tin.scene.mesh().positions().len() as u32;
         let vertices = (0..n_vertices).into_par_iter().map(|v| plane.vertex(v)).collect();
@@ -321,11 +321,11 @@ fn sweep(tin: &Tin, sheets: &Sheets, triangles_per_strip: usize) -> Option<GridP
 impl TinPart {
     /// Whether a point lies beyond the part's borders x and y.
     fn is_outside(&self, p: DVec3) -> (bool, bool) {
-        let PlanSight { centre, sx, sy, forward } = self.sight;
+        let PlanSight { center, sx, sy, forward } = self.sight;
         if forward.is_some() {
             return (false, false);
         }
-        (p.x * sx < centre.x * sx, p.y * sy < centre.y * sy)
+        (p.x * sx < center.x * sx, p.y * sy < center.y * sy)
     }
 
     /// The range of u that a triangle is within; `None` when it has nothing in the part.
@@ -415,13 +415,13 @@ impl TinPart {
             strip.draw_whole(edge);
             return;
         }
-        let PlanSight { centre, sx, sy, forward } = self.sight;
+        let PlanSight { center, sx, sy, forward } = self.sight;
         let place = |v: u32| {
             let p = tin.point(v);
             (p.x * sx, p.y * sy)
         };
         let (near, far) = if place(a) < place(b) { (a, b) } else { (b, a) };
-        let foot = (centre.x * sx, centre.y * sy);
+        let foot = (center.x * sx, center.y * sy);
         let (from, to) = (place(near), place(far));
         let mut t_foot = None;
         if forward.is_none() {

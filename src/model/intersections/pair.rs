@@ -71,7 +71,7 @@ enum Location {
     AtCorner(u32),
 }
 
-/// A triangle with its points and plane at hand.
+/// A triangle with its points and plane.
 #[derive(Debug)]
 pub(super) struct Prepared {
     corners: [u32; 3],
@@ -87,7 +87,7 @@ impl Prepared {
     }
 }
 
-/// Which corners of `own` are corners of `other`, too: bit k stands for corner k.
+/// Which corners of `own` are also corners of `other`: bit k stands for corner k.
 #[inline]
 pub(super) fn shared(own: [u32; 3], [p, q, r]: [u32; 3]) -> u32 {
     let [a, b, c] = own.map(|x| u32::from((x == p) | (x == q) | (x == r)));
@@ -247,7 +247,7 @@ fn common(
     let mut n = 0;
     for k in 0..2 {
         for_ends(solid, numbers, corners, signs, k, |end, site| {
-            // Each of the two triangles may name the same end, with a construction of its own.
+            // Each of the two triangles may name the same end, constructed differently.
             if !ends[..n].iter().flatten().any(|&(known, _)| known == end) {
                 ends[n] = Some((end, site));
                 n += 1;

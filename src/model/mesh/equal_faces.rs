@@ -7,7 +7,7 @@ use super::Mesh;
 
 /// For each face the first one with the same border. O(corners) expected.
 pub(super) fn first_equal_face(mesh: &Mesh) -> Vec<u32> {
-    // The hash is seeded anew in each run, so no file can be made to collide on purpose. The result
+    // The hash has a new seed in each run, so no file can be made to collide on purpose. The result
     // does not depend on it.
     let hasher = hashbrown::DefaultHashBuilder::default();
     let hash = |face: u32| {

@@ -5,7 +5,7 @@ use glam::DVec3;
 /// Coordinates whose decimal digits are looked at, at most.
 const SAMPLES: usize = 6000;
 
-/// Most decimals that are looked for: as many digits as tell doubles of any size below one apart.
+/// The most decimals that are tried: enough digits to distinguish doubles of any size below one.
 const MOST_DECIMALS: u32 = 17;
 
 /// Twice the spacing of single precision, as a part of the largest coordinate.
@@ -96,7 +96,7 @@ mod tests {
     fn singles_have_the_spacing_of_singles() {
         let single = f64::from(0.1_f32);
         assert_eq!(error_of(&[100.0, single]), 100.0 * SINGLE_SPACING);
-        // Singles printed with nine digits, which are no singles any more.
+        // Singles printed with nine digits, which are no longer singles.
         assert_eq!(error_of(&[100.0, 0.100000001, 33.2999992]), 100.0 * SINGLE_SPACING);
         let third = 100.0 / 3.0;
         assert_eq!(error_of(&[100.0, third]), 100.0 * DOUBLE_SPACING);

@@ -6,7 +6,7 @@ use std::hash::{BuildHasher, Hasher};
 
 /// For each position the index of the first one equal to it (−0 is 0). O(n) expected.
 pub(super) fn first_equal_position(positions: &[DVec3]) -> Vec<u32> {
-    // The hash is seeded anew in each run, so that no file can be made to collide on purpose; the
+    // The hash has a new seed in each run, so that no file can be made to collide on purpose; the
     // result does not depend on it.
     let hasher = hashbrown::DefaultHashBuilder::default();
     let bits = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);

@@ -117,7 +117,7 @@ fn from_data(index: usize, data: &str) -> Result<Vec<u8>, Fault> {
     BASE64.decode(content.trim()).map_err(|_| no_base64())
 }
 
-/// A buffer in a file of its own, which has to be in the model's folder or below.
+/// A buffer in a separate file, which has to be in the model's folder or below.
 fn from_file(buffer: &Buffer, uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, Fault> {
     let name = shown(uri.as_bytes());
     let relative = local_path(uri).ok_or_else(|| Fault::BufferElsewhere(name.clone()))?;

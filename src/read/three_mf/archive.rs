@@ -7,14 +7,14 @@ use zip::result::ZipError;
 
 use crate::read::error::Fault;
 
-/// Bytes of XML that are unpacked at most: parsing takes about eight times as much.
+/// The most bytes of XML that are unpacked: parsing takes about eight times as much.
 const MOST_UNPACKED: u64 = 1 << 28;
 
-/// How often XML may be longer than it is packed. Lists of numbers pack to a quarter or a tenth; only
-/// what was made to hurt packs to a hundredth.
+/// How many times longer XML may be than its packed form. Lists of numbers pack to a quarter or a tenth;
+/// only malicious files pack to a hundredth.
 const MOST_TIMES_LONGER: u64 = 100;
 
-/// What may always be unpacked.
+/// This many bytes may always be unpacked.
 const FREE: u64 = 1 << 22;
 
 /// What points to the model, by the last step of its type.

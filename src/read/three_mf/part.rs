@@ -8,10 +8,10 @@ use roxmltree::{Document, Node};
 use crate::read::error::Fault;
 use crate::read::text::{number, shown};
 
-/// Elements and attributes that a document may have, at most.
+/// The most elements and attributes of a document.
 const MOST_NODES: u32 = 1 << 28;
 
-/// What a part says.
+/// The contents of a part.
 pub(super) struct ModelPart {
     /// Millimeters in its unit of length.
     pub(super) unit_mm: f64,
@@ -21,7 +21,7 @@ pub(super) struct ModelPart {
     pub(super) items: Vec<Component>,
 }
 
-/// A mesh, or what is put together of other objects.
+/// A mesh, or an assembly of other objects.
 #[derive(Default)]
 pub(super) struct Object {
     pub(super) name: String,

@@ -1,7 +1,7 @@
 //! Cutting edges that segments may pass behind.
 //!
-//! Their boxes in the image say which may cross; then depths, and the sides of the segment on which
-//! the ends of the cutting edge lie, rule out most of what is left.
+//! Their boxes in the image find those that may cross; then depths, and on which side of the segment the
+//! ends of the cutting edge are, rule out most of the rest.
 
 use super::super::rounding::{Rounding, Separation};
 use super::super::segment::Segment;
@@ -10,7 +10,7 @@ use super::cutting::CuttingEdge;
 use super::places::Places;
 use crate::classify::ViewedScene;
 
-/// The cutting edges that may cross each segment in front of it, or lie over one of its ends.
+/// The cutting edges that may cross each segment in front of it, or pass over one of its ends.
 ///
 /// `boxes` are those of the segments. Expected cost: segments and cutting edges, once, and pairs
 /// whose boxes in the image share a point.

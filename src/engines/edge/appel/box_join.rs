@@ -1,11 +1,11 @@
 //! Pairs of boxes, one from each of two sets, that share a point.
 //!
-//! Boxes are laid on a lattice, rounded outwards, and spread over the cells of a grid. Where many
-//! share a cell, the cell gets a grid of its own:
+//! Boxes are rounded outward to a lattice and sorted into the cells of a grid. Where many share a cell,
+//! the cell gets its own grid:
 //!
 //! ```text
 //!   ┌───────┬───────┐       A pair is found in every cell that both boxes touch. It counts in the
-//!   │   ┌───┼───┐   │       one that holds the lowest corner of what they share (●), so it counts
+//!   │   ┌───┼───┐   │       one with the lowest corner of their common part (●), so it counts
 //!   │   │   ●───┼─┐ │       once.
 //!   ├───┼───┼───┤ │ │
 //!   │   └───┼───┘ │ │

@@ -1,8 +1,8 @@
 //! Cutting edges: sides of triangles at which the number of layers changes.
 //!
-//! Seen along a side from its lower vertex to its higher one, each triangle that has this side lies
-//! on the left or on the right of its image, as its third vertex does. Where as many lie left as
-//! right, nothing changes for what is behind; everywhere else the side is a *cutting edge*:
+//! Seen along a side from its lower vertex to its higher one, each triangle with this side is to the left
+//! or to the right of its image, as its third vertex is. If as many are left as right, nothing changes for
+//! what is behind; otherwise the side is a *cutting edge*:
 //!
 //! ```text
 //!    left 1   right 1            left 2   right 0            left 1   right 0
@@ -12,8 +12,8 @@
 //!          p      no cut              p     a silhouette          p    a boundary
 //! ```
 //!
-//! No normal and no winding enters, so open, non-manifold and badly wound meshes are no special
-//! cases. Edge-on triangles cover nothing and are not counted.
+//! Neither normals nor winding matter, so open, non-manifold and badly wound meshes need no special cases.
+//! Edge-on triangles cover nothing and are not counted.
 
 use crate::classify::ViewedScene;
 use crate::model::topology::Topology;
@@ -129,9 +129,9 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// Whether a triangle covers anything and lies wholly beyond the near plane.
+/// Whether a triangle covers anything and is wholly beyond the near plane.
 ///
-/// Those that the near plane cuts are not carried along edges but asked one by one.
+/// Triangles that the near plane cuts do not enter the carried `qi`; they are tested one by one.
 #[inline]
 pub(super) fn is_counted(view: &ViewedScene, triangle: u32) -> bool {
     if view.triangle_turns()[triangle as usize] == Sign::Zero {

@@ -1,9 +1,9 @@
 //! Drawn edges that may have the same image over some length.
 //!
-//! Edges on one line of the image have the same angle and the same distance from a center. Both are
-//! cut into narrow bins, each edge goes into all bins it may belong to, and edges in one bin whose
-//! boxes overlap are offered as pairs. Very short edges, whose angle means little, are looked up by
-//! place instead. Nothing is decided here: pairs may be offered in vain.
+//! Edges on one line of the image have the same angle and the same distance from a center. Both are divided
+//! into narrow bins, each edge goes into all bins it may belong to, and edges in one bin whose boxes
+//! overlap are candidate pairs. Very short edges, whose angle means little, are found by position instead.
+//! Nothing is decided here: candidates may turn out to be none.
 
 use super::super::index::{ImageIndex, Visitor};
 use super::super::rounding::{Place, Rounding};

@@ -1,11 +1,10 @@
 //! Triangles that segments may pierce, touch or be in near contact with.
 //!
-//! The boxes of both, in the image and in depth, say which are near each other; then the plane of
-//! the triangle rules out most of what is left, since the ends of nearly all edges lie well on one
-//! side of it.
+//! The boxes of both, in the image and in depth, find those that are near each other; then the plane of
+//! the triangle rules out most of the rest, since the ends of nearly all edges are well on one side of it.
 //!
-//! Points in near contact lie behind the triangle on a sight line through it, so that its box needs
-//! to be made larger in depth only, if by much where the triangle is nearly edge-on.
+//! Points in near contact are behind the triangle on a sight line through it, so its box has to be enlarged
+//! in depth only, though by much where the triangle is nearly edge-on.
 
 use super::super::segment::Segment;
 use super::box_join::{LatticeBox, Pairs, meeting_pairs};

@@ -27,7 +27,7 @@ const LOOKED_AT: usize = 1 << 17;
 /// How many of some sight lines, spread over all segments, meet an odd number of triangles.
 ///
 /// `starts` are the layers in front of each segment where it begins. Zero unless the surface is closed
-/// and wholly beyond the near plane. O(triangles) for each line, and no more than so many in all.
+/// and wholly beyond the near plane. O(triangles) for each line, with a limit on the total.
 pub(super) fn count_odd(
     view: &ViewedScene,
     sides: &Sides,

@@ -1,17 +1,16 @@
 //! Quantitative invisibility of vertices, carried along edges.
 //!
-//! Every edge between two regular vertices says how much more the one has than the other. A
-//! union-find structure that knows these differences joins vertices into connected sets; one
-//! sight line then gives a whole set its numbers. An edge within a set says something that is known
-//! already: the checksum.
+//! Every edge between two regular vertices gives the difference of their quantitative invisibilities. A
+//! union-find structure with these differences joins vertices into connected sets; one sight line then
+//! determines a whole set. An edge within a set repeats what is known already, which serves as a checksum.
 
-/// Vertices in sets, each with its difference to a vertex that stands for the set.
+/// Vertices in sets, each with its difference to a vertex that represents the set.
 #[derive(Debug)]
 pub(super) struct Levels {
     parent: Vec<u32>,
     /// The vertex's number less its parent's.
     above: Vec<i32>,
-    /// What is known about the set, at the vertex that stands for it.
+    /// What is known about the set, at the vertex that represents it.
     base: Vec<Base>,
 }
 
@@ -20,7 +19,7 @@ pub(super) struct Levels {
 pub(super) enum Base {
     /// No sight line was asked.
     Unknown,
-    /// The number of the vertex that stands for the set.
+    /// The `qi` of the vertex that represents the set.
     Known(i32),
     /// Two ways gave different numbers.
     Contradicted,
@@ -32,7 +31,7 @@ impl Levels {
         Self { parent: (0..n as u32).collect(), above: vec![0; n], base: vec![Base::Unknown; n] }
     }
 
-    /// The vertex that stands for the set, and how much more `vertex` has than it.
+    /// The vertex that represents the set, and how much more `vertex` has.
     pub(super) fn find(&mut self, vertex: u32) -> (u32, i32) {
         let (mut root, mut above) = (vertex, 0);
         while self.parent[root as usize] != root {
@@ -62,7 +61,7 @@ impl Levels {
             }
             return agrees;
         }
-        // The lower number stands for both, so that chains stay short and the result is one.
+        // The lower number represents both, so that chains stay short and the result is unique.
         let (root, child, above) = if root_a < root_b {
             (root_a, root_b, above_a + more - above_b)
         } else {
@@ -82,7 +81,7 @@ impl Levels {
         self.base[root as usize] = Base::Contradicted;
     }
 
-    /// What is known about a set, by the vertex that stands for it.
+    /// What is known about a set, by the vertex that represents it.
     pub(super) fn base(&self, root: u32) -> Base {
         self.base[root as usize]
     }

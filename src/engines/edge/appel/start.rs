@@ -105,7 +105,7 @@ impl<'v> Beyond<'v> {
 /// ```text
 ///      ╲  │  ╱        The number of triangles over a direction is the same for all directions,
 ///       ╲ │ ╱         when each edge has one triangle on its left and one on its right (the
-///   ─────[v]─────     vertex is even); so one direction tells whether it is one everywhere.
+///   ─────[v]─────     vertex is even); so one direction shows whether it is one everywhere.
 ///       ╱ │ ╲
 /// ```
 pub(super) fn is_plain(view: &ViewedScene, stars: &Stars, vertex: u32) -> bool {

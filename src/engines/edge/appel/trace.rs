@@ -5,8 +5,8 @@
 //! triangle:
 //!
 //! ```text
-//!            q                    A vertex whose image lies on the segment's counts as lying on
-//!      ┄┄┄┄┄┄┼┄┄┄┄► left          the right of the left path and on the left of the right path,
+//!            q                    A vertex whose image is on the segment's counts as being to
+//!      ┄┄┄┄┄┄┼┄┄┄┄► left          the right of the left path and to the left of the right path,
 //!   A ●──────┼──────────● B       so that every edge either crosses a path or does not, whatever
 //!      ┄┄┄┄┄┄┼┄┄┄┄► right         coincides in the image.
 //!            p

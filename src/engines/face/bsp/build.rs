@@ -1,7 +1,7 @@
-//! The growth of a tree of planes: in rounds, each parting all sets of fragments that are left.
+//! Building a tree of planes: in rounds, each of which divides all remaining sets of fragments.
 //!
-//! Large sets are parted in parallel, one plane a round; small ones are worked off at once by one
-//! thread. Nothing depends on the number of threads, and nothing recurs.
+//! Large sets are divided in parallel, by one plane per round; small ones are finished at once by one
+//! thread. Nothing depends on the number of threads, and nothing is recursive.
 
 use super::{Forest, NONE, PlaneNode};
 use crate::engines::face::fragment::{Fragment, Position};
@@ -14,22 +14,22 @@ use thiserror::Error;
 /// Faces whose planes are tried for each node. More make smaller trees, more slowly.
 pub const N_CANDIDATES: usize = 8;
 
-/// Fragments that a candidate is tried on. With fewer, bad planes pass for good ones.
+/// Fragments that a candidate is tested on. With fewer, bad planes look good.
 pub const N_SAMPLES: usize = 48;
 
-/// How many fragments of imbalance a split fragment weighs as much as. Splits grow the tree for
-/// good, imbalance only makes it deeper.
+/// A split fragment weighs as much as this many fragments of imbalance. Splits enlarge the tree for good,
+/// imbalance only makes it deeper.
 pub const SPLIT_WEIGHT: i64 = 6;
 
-/// Sets of at least this many fragments may be parted by a plane across an axis. Smaller sets come
-/// to single faces sooner without; larger ones of a convex body would cost the square of their size.
+/// Sets of at least this many fragments may be divided by a plane across an axis. Smaller sets are
+/// finished sooner without; larger ones, of a convex body, would cost the square of their size.
 pub const AXES_FROM: usize = 24;
 
-/// No tree gets more fragments than this: some two gigabytes.
+/// The most fragments of a tree: about two gigabytes.
 pub const MAX_FRAGMENTS: usize = 4_000_000;
 
-/// Pairs of triangles that pierce each other, for each triangle, above which no tree is begun: a
-/// thousand large faces in a heap, which would take a minute.
+/// The most pairs of triangles that pierce each other, for each triangle. More are refused: a thousand
+/// large faces in a heap would take a minute.
 pub const MAX_PIERCINGS: u64 = 32;
 
 /// Sets of at most this many fragments are left to one thread.
@@ -42,7 +42,7 @@ const ALONE: usize = 512;
 )]
 pub struct TooManyFragments;
 
-/// Whether a tree may be begun, guessed from a sample of the faces.
+/// Whether a tree may be started, estimated from a sample of the faces.
 pub(in crate::stages::engines::face) fn check_piercings(
     scene: &Scene,
 ) -> Result<(), TooManyFragments> {
@@ -53,7 +53,7 @@ pub(in crate::stages::engines::face) fn check_piercings(
     Ok(())
 }
 
-/// Where the number of a node goes.
+/// Where the number of a node is stored.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::stages::engines::face) enum Link {
     /// The root of a tree, by its place among the roots.
@@ -71,17 +71,17 @@ struct Parted {
     back: Vec<Fragment>,
 }
 
-/// What a round makes of one set.
+/// What a round turns one set into.
 enum Grown {
     /// A node; the rest is for the next round.
     Node(Parted),
-    /// A whole tree of its own numbers, the root being the first.
+    /// A whole tree with its own numbering; the root is the first node.
     Tree(Forest),
     Nothing,
 }
 
 impl Forest {
-    /// Grows a tree from each set of fragments; the roots of those that are below no node.
+    /// Grows a tree from each set of fragments; returns the roots of those that are below no node.
     pub(in crate::stages::engines::face) fn grow(
         &mut self,
         scene: &Scene,
@@ -132,7 +132,7 @@ impl Forest {
         Ok(roots)
     }
 
-    /// Makes a node known to the one above it.
+    /// Links a node to the one above it.
     pub(super) fn link(&mut self, link: Link, number: u32) {
         match link {
             Link::Root(_) => {}
@@ -186,10 +186,10 @@ fn alone(
     forest
 }
 
-/// Parts a set of at least one fragment by the plane that seems best.
+/// Divides a set of at least one fragment by the plane that seems best.
 ///
-/// Every set ends: a plane of a face takes that face out of the set for good, and one across an axis
-/// is taken only when both sides are clearly smaller.
+/// This terminates: a plane of a face removes that face from the set for good, and a plane across an axis
+/// is taken only if both sides are clearly smaller.
 fn part(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut FragmentCounts) -> Parted {
     let n = set.len();
     for name in ranked(planes, &set, counts) {
@@ -223,11 +223,11 @@ fn part(scene: &Scene, planes: &Planes, set: Vec<Fragment>, counts: &mut Fragmen
         in_painting_order(scene, &mut within);
         return Parted { plane: name, within, front, back };
     }
-    // Not reached: there is always a face among the candidates.
+    // Unreachable: there is always a face among the candidates.
     Parted { plane: PlaneName::Near, within: set, front: Vec::new(), back: Vec::new() }
 }
 
-/// Sorts what lies in one plane: the nearest, that of the lowest face, is painted last.
+/// Sorts fragments in one plane: the nearest, that of the lowest face, is painted last.
 pub(super) fn in_painting_order(scene: &Scene, within: &mut [Fragment]) {
     let face = |f: &Fragment| scene.triangle_faces()[f.triangle() as usize];
     within.sort_by_key(|f| std::cmp::Reverse((face(f), f.triangle())));

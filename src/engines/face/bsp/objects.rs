@@ -1,14 +1,14 @@
 //! The upper part of a tree: planes that keep whole objects apart.
 //!
 //! ```text
-//!      ┌──┐   ┆                      an object is what is connected by vertices; where a plane
-//!      │ a│   ┆   ╱╲ c               leaves all objects whole, the tree parts those first, and
-//!      └──┘   ┆  ╱  ╲                no face is cut for it
+//!      ┌──┐   ┆                      an object is a set of faces connected by vertices; where a
+//!      │ a│   ┆   ╱╲ c               plane leaves all objects whole, the tree divides by it first,
+//!      └──┘   ┆  ╱  ╲                and no face is cut
 //!     ┌────┐  ┆  ╲  ╱   across an axis, where boxes leave a gap,
-//!     │  b │  ┆   ╲╱    or the plane of a face, which convex objects lie behind
+//!     │  b │  ┆   ╲╱    or the plane of a face, with convex objects behind it
 //! ```
 //!
-//! What no such plane parts is left to the tree of faces, as one set.
+//! Objects that no such plane separates are left to the tree of faces, as one set.
 
 use super::build::{Link, in_painting_order};
 use super::{Forest, NONE};
@@ -18,12 +18,12 @@ use crate::model::scene::Scene;
 use crate::predicates::{PlaneName, Planes};
 use glam::DVec3;
 
-/// Faces whose planes are tried where no gap between boxes parts objects.
+/// Faces whose planes are tried where no gap between boxes separates objects.
 const N_OBJECT_CANDIDATES: usize = 24;
 
-/// How often each fragment is looked at to part objects, on average; what is left then goes to trees of
-/// faces. Even parts need as many looks as the number of objects has digits in base two; one object after
-/// the other off a large heap would need as many as there are objects.
+/// How often each fragment is visited to separate objects, on average; the rest goes to trees of faces.
+/// Even divisions need as many visits as the number of objects has binary digits; taking one object after
+/// another off a large heap would need as many as there are objects.
 const MAX_LOOKS: usize = 64;
 
 /// Connected fragments.
@@ -33,7 +33,7 @@ pub(super) struct Object {
     high: DVec3,
 }
 
-/// The objects of a scene in the order of their first triangles: what shares vertices is connected.
+/// The objects of a scene in the order of their first triangles: faces that share a vertex are connected.
 pub(super) fn all(scene: &Scene, planes: &Planes) -> Vec<Object> {
     let mut above: Vec<u32> = (0..scene.mesh().positions().len() as u32).collect();
     for &[a, b, c] in scene.triangles() {
@@ -100,8 +100,8 @@ struct Separation {
 }
 
 impl Forest {
-    /// Makes a node of each plane that keeps objects apart. Returns the root, and what is left for trees
-    /// of faces with its place in the tree.
+    /// Makes a node of each plane that separates objects. Returns the root, and the sets left for trees of
+    /// faces, each with its place in the tree.
     pub(super) fn part_objects(
         &mut self,
         scene: &Scene,
@@ -139,7 +139,7 @@ impl Forest {
     }
 }
 
-/// The plane that parts objects most evenly, if any is found.
+/// The plane that separates objects most evenly, if any is found.
 fn separation(planes: &Planes, objects: &[Object], n_tests: &mut u64) -> Option<Separation> {
     if objects.len() < 2 {
         return None;
@@ -147,10 +147,10 @@ fn separation(planes: &Planes, objects: &[Object], n_tests: &mut u64) -> Option<
     gap(objects).or_else(|| plane_of_a_face(planes, objects, n_tests))
 }
 
-/// The plane across an axis that parts the fragments most evenly without touching boxes on its back.
+/// The plane across an axis that divides the fragments most evenly without touching boxes behind it.
 ///
-/// Boxes that touch are not parted: faces of both may lie in one plane, and of those the one with the
-/// lowest number is in front.
+/// Boxes that touch are not separated: both may have faces in one plane, of which the one with the lowest
+/// number is in front.
 fn gap(objects: &[Object]) -> Option<Separation> {
     let n_fragments = n_fragments(objects);
     let mut best: Option<(usize, usize, f64)> = None;
@@ -180,7 +180,7 @@ fn gap(objects: &[Object]) -> Option<Separation> {
 fn plane_of_a_face(planes: &Planes, objects: &[Object], n_tests: &mut u64) -> Option<Separation> {
     let n_fragments = n_fragments(objects);
     let n = n_fragments.min(N_OBJECT_CANDIDATES);
-    // Spread by a multiple of the golden ratio, so that no side of equal objects is always left out.
+    // Spread by a multiple of the golden ratio, so that no side of equal objects is always missed.
     let spread = |k: u64| u128::from(k.wrapping_mul(0x9e37_79b9_7f4a_7c15)) * n_fragments as u128;
     let mut candidates: Vec<usize> = (0..n as u64).map(|k| (spread(k) >> 64) as usize).collect();
     candidates.sort_unstable();
@@ -220,7 +220,7 @@ fn plane_of_a_face(planes: &Planes, objects: &[Object], n_tests: &mut u64) -> Op
 }
 
 impl Separation {
-    /// What lies in the plane, and the objects on both sides of it.
+    /// The fragments in the plane, and the objects on both sides of it.
     fn apply(
         &self,
         planes: &Planes,
@@ -238,7 +238,7 @@ impl Separation {
             if aside.is_empty() {
                 continue;
             }
-            // Its box stays as it was: it only has to hold all of it.
+            // Its box stays the same: it only has to contain the object.
             let object = Object { fragments: aside, ..object };
             match position {
                 Position::Front => front.push(object),

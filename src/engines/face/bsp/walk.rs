@@ -1,4 +1,4 @@
-//! The walk of a tree of planes in the order of sight, without recursion: trees may be deep.
+//! The walk of a tree of planes in depth order, without recursion: trees may be deep.
 
 use super::{Forest, NONE};
 use crate::engines::face::fragment::Fragment;
@@ -9,11 +9,11 @@ use crate::predicates::{PlaneName, Planes, Sign};
 pub enum WalkOrder {
     /// What may be hidden first: the order of painting.
     FarToNear,
-    /// What may hide first: for masks of what is done.
+    /// What may hide first: for masks of what is drawn.
     NearToFar,
 }
 
-/// The fragments of a tree in order of sight; see [`BspTree::walk`](super::BspTree::walk).
+/// The fragments of a tree in depth order; see [`BspTree::walk`](super::BspTree::walk).
 #[derive(Debug)]
 pub struct BspWalk<'a> {
     forest: &'a Forest,
@@ -52,7 +52,7 @@ impl<'a> Iterator for BspWalk<'a> {
 }
 
 impl<'a> BspWalk<'a> {
-    /// The next fragment, leaving out nodes that are not wanted with all below them.
+    /// The next fragment, skipping unwanted nodes with everything below them.
     pub(super) fn next_wanted(
         &mut self,
         mut is_wanted: impl FnMut(u32) -> bool,
@@ -64,7 +64,7 @@ impl<'a> BspWalk<'a> {
             };
             if let Some((fragment, rest)) = next {
                 self.here = rest;
-                // Its triangle may be wound against that which gave the plane.
+                // Its triangle may be wound opposite to the one that gave the plane.
                 let own = PlaneName::Triangle(fragment.triangle());
                 return Some((fragment, self.planes.side_of_eye(own)));
             }
@@ -74,7 +74,7 @@ impl<'a> BspWalk<'a> {
                 Visit::Node(number) => {
                     let node = &self.forest.nodes[number as usize];
                     let facing = self.planes.side_of_eye(node.plane);
-                    // With the eye in the plane neither side hides anything of the other.
+                    // With the eye in the plane, neither side hides anything on the other.
                     let (near, far) = if facing == Sign::Negative {
                         (node.back, node.front)
                     } else {

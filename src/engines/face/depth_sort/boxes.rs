@@ -1,4 +1,4 @@
-//! A tree of boxes over image and depth, which offers the pairs that tests are needed for.
+//! A tree of boxes over image and depth, which finds the pairs that need tests.
 
 use super::SortedFragment;
 use glam::DVec2;
@@ -13,7 +13,7 @@ struct BoxNode {
     far: f64,
     first: u32,
     last: u32,
-    /// The node of the second half, that of the first being the next; 0 for a leaf.
+    /// The node of the second half; the first half follows this node. 0 for a leaf.
     second: u32,
     parent: u32,
     /// Items that are not painted yet.
@@ -110,8 +110,8 @@ impl BoxTree {
         }
     }
 
-    /// Calls `found` with the numbers of all items that are left, whose image box may meet that of
-    /// `item` and whose depth ends beyond the beginning of that of `item`.
+    /// Calls `found` with the numbers of all remaining items whose image box may meet that of `item` and
+    /// whose farthest depth is beyond the nearest depth of `item`.
     pub(super) fn for_each(
         &self,
         items: &[SortedFragment],

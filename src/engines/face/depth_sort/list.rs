@@ -1,7 +1,7 @@
-//! The list in the making: what is moved to its front, and what is split.
+//! The list being sorted: what is moved to its front, and what is split.
 //!
-//! Those moved before each other form a stack: on top is the one that is looked at, below it the one
-//! that it has to precede, and so on down to the one with which the list began. All of them are marked.
+//! Items moved before each other form a stack: on top is the one being tested, below it the one that it
+//! has to precede, and so on down to the one that headed the list. All of them are marked.
 
 use super::boxes::BoxTree;
 use super::relation::{Test, is_across, test};
@@ -22,7 +22,7 @@ enum State {
     Split(u32),
 }
 
-/// An item that is looked at, and those which it may hide.
+/// An item being tested, and those that it may hide.
 #[derive(Debug)]
 struct Entry {
     item: u32,
@@ -56,10 +56,10 @@ pub(super) struct List<'a> {
     boxes: BoxTree,
     /// For each item at the start, how many of its parts are not painted.
     n_parts: Vec<u32>,
-    /// What is to begin the list next.
+    /// Items to put at the head of the list next.
     heap: BinaryHeap<Farthest>,
     stack: Vec<Entry>,
-    /// What has left the stack unpainted; pairs that are settled stay so.
+    /// Items that left the stack unpainted; their settled pairs remain settled.
     paused: FxHashMap<u32, Entry>,
 }
 
@@ -151,7 +151,7 @@ impl<'a> List<'a> {
                             self.split(number, by);
                             counts.splits += 1;
                         }
-                        // Not reached: planes alone order those which cross none.
+                        // Unreachable: planes alone order items that cross none.
                         None => self.pass(),
                     },
                 }
@@ -173,14 +173,14 @@ impl<'a> List<'a> {
         test != Test::None
     }
 
-    /// The pair is settled.
+    /// Marks the pair as settled.
     fn pass(&mut self) {
         if let Some(top) = self.stack.last_mut() {
             top.next += 1;
         }
     }
 
-    /// The parts of another item are to be looked at, too.
+    /// The parts of another item have to be tested, too.
     fn also(&mut self, first: u32) {
         if let Some(top) = self.stack.last_mut() {
             top.others.extend([first, first + 1]);
@@ -216,8 +216,8 @@ impl<'a> List<'a> {
         }
     }
 
-    /// Of the items on the stack from `height` on one that lies across the plane of another: best the
-    /// one on top, since all above it have to be looked at again.
+    /// Of the items on the stack from `height` on, one that crosses the plane of another: best the one on
+    /// top, since all above it have to be tested again.
     fn split_of_cycle(&self, height: usize) -> Option<(u32, u32)> {
         let members = || self.stack[height..].iter().rev().map(|entry| entry.item);
         let (first, last) = (self.stack.get(height)?.item, self.stack.last()?.item);

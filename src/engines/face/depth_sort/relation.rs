@@ -18,30 +18,30 @@ pub(super) enum Test {
     OnePlane,
     Apart,
     Corners,
-    /// None of them holds.
+    /// None of them passes.
     None,
 }
 
-/// How often each test was the first to hold.
+/// How often each test was the first to pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Settled {
-    /// The depth of P begins where that of Q ends.
+    /// The nearest point of P is no nearer than the farthest of Q.
     pub depth: u64,
-    /// The boxes of the images are apart.
+    /// The boxes of the images are disjoint.
     pub boxes: u64,
     /// Both are parts of one triangle.
     pub one_triangle: u64,
-    /// P lies behind the plane of Q.
+    /// P is behind the plane of Q.
     pub behind: u64,
-    /// Q lies in front of the plane of P.
+    /// Q is in front of the plane of P.
     pub in_front: u64,
-    /// Both lie in one plane, and P is of the later face.
+    /// Both are in one plane, and P is of the later face.
     pub one_plane: u64,
     /// The images do not overlap.
     pub apart: u64,
     /// Q is nearer wherever the images overlap.
     pub corners: u64,
-    /// No test held.
+    /// No test passed.
     pub none: u64,
 }
 
@@ -62,7 +62,7 @@ impl Settled {
     }
 }
 
-/// Where a fragment lies, as the eye sees it.
+/// Where a fragment is relative to a plane, as the eye sees it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Beside {
     Behind,
@@ -75,7 +75,7 @@ fn plane_of(planes: &Planes, item: &SortedFragment) -> Plane {
     planes.plane(PlaneName::Triangle(item.fragment.triangle()))
 }
 
-/// How `item` lies to the plane of `other`.
+/// Where `item` is relative to the plane of `other`.
 fn beside(planes: &Planes, item: &SortedFragment, other: &SortedFragment) -> Beside {
     let is_front = other.facing == Sign::Positive;
     match item.fragment.position(planes, &plane_of(planes, other)) {
@@ -87,7 +87,7 @@ fn beside(planes: &Planes, item: &SortedFragment, other: &SortedFragment) -> Bes
     }
 }
 
-/// The first test that says that `p` may be painted before `q`, since it hides no part of it.
+/// The first test that shows that `p` may be painted before `q`, since it hides no part of it.
 pub(super) fn test(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> Test {
     if p.near >= q.far {
         return Test::Depth;
@@ -113,19 +113,19 @@ pub(super) fn test(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> T
     if !images_overlap(planes, p, q) {
         return Test::Apart;
     }
-    // With one wholly on the wrong side of the other's plane the common part cannot be right.
+    // If one is wholly on the wrong side of the other's plane, the common part cannot be right.
     let may_be = p_to_q == Beside::Across && q_to_p == Beside::Across;
     if may_be && is_behind_all_over(planes, p, q) { Test::Corners } else { Test::None }
 }
 
-/// Whether `fragment` of `item` lies across the plane of `other`.
+/// Whether `fragment` of `item` crosses the plane of `other`.
 pub(super) fn is_across(planes: &Planes, item: &SortedFragment, other: &SortedFragment) -> bool {
     beside(planes, item, other) == Beside::Across
 }
 
-/// Whether the images have more than borders in common.
+/// Whether the images share more than borders.
 ///
-/// Convex polygons have not when one of their sides has all of the other polygon beyond it.
+/// Convex polygons do not if a side of one has all of the other beyond it.
 fn images_overlap(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> bool {
     let parts = |a: &SortedFragment, b: &SortedFragment| {
         sides(&a.fragment).any(|(from, to)| {
@@ -141,7 +141,7 @@ fn sides(fragment: &Fragment) -> impl Iterator<Item = (&Corner, &Corner)> {
     sides.iter().zip(next).map(|(from, to)| (&from.corner, &to.corner))
 }
 
-/// Whether the image of a corner lies in that of an item or on its border.
+/// Whether the image of a corner is in that of an item or on its border.
 fn covers(planes: &Planes, item: &SortedFragment, corner: &Corner) -> bool {
     sides(&item.fragment)
         .all(|(from, to)| planes.turn(from, to, corner).times(item.facing) != Sign::Negative)
@@ -149,8 +149,8 @@ fn covers(planes: &Planes, item: &SortedFragment, corner: &Corner) -> bool {
 
 /// Whether `p` is at or behind `q` at every corner of the common part of their images.
 ///
-/// The depth of one over the other is linear there, so that corners tell all. A corner of the common
-/// part is a corner of one in the other, or a crossing of two sides.
+/// The difference of their depths is linear there, so the corners suffice. A corner of the common part is
+/// a corner of one inside the other, or a crossing of two sides.
 fn is_behind_all_over(planes: &Planes, p: &SortedFragment, q: &SortedFragment) -> bool {
     let (of_p, of_q) = (plane_of(planes, p), plane_of(planes, q));
     let wrong = p.fragment.corners().any(|corner| {

@@ -1,4 +1,4 @@
-//! Borders that are one in truth made one on the grid.
+//! Borders that coincide in truth are made to coincide on the grid.
 //!
 //! ```text
 //!   ●───────────●        ●─────●─────●      a corner of one border within a few steps of the
@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use super::{RegionSide, SLIVER_STEPS};
 use crate::engines::face::boxes::BoxIndex;
 
-/// The sides with their corners on each other where they are near.
+/// The sides, with corners moved onto each other where they are near.
 pub(super) fn welded(sides: Vec<RegionSide>) -> Vec<RegionSide> {
     let mut corners: Vec<DVec2> = sides.iter().map(|side| side.from).collect();
     corners.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -63,8 +63,8 @@ pub(super) fn welded(sides: Vec<RegionSide>) -> Vec<RegionSide> {
     result
 }
 
-/// For each corner, in their order, the first one within a few steps of it that stays where it is;
-/// itself if there is none. Of those that stay only a few fit into a cell of that size. O(n).
+/// For each corner, in order, the first one within a few steps of it that stays in place, or else itself.
+/// Only a few corners that stay fit into a cell of that size. O(n).
 fn first_near(corners: &[DVec2]) -> Vec<u32> {
     let cell = |at: DVec2| (at / SLIVER_STEPS).floor().to_array().map(|x| x as i64);
     let mut staying: FxHashMap<[i64; 2], Vec<u32>> = FxHashMap::default();
@@ -90,7 +90,7 @@ fn first_near(corners: &[DVec2]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// Corners on a small lattice, many of them above each other.
+    /// Corners on a small lattice, many of them equal.
     #[test]
     fn corners_become_the_first_one_near_them_that_stays() {
         let step = SLIVER_STEPS / 3.0;

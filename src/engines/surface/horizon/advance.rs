@@ -71,7 +71,7 @@ impl Horizon {
         let joins = |piece: &HorizonPiece, a: HorizonVertex, b: HorizonVertex| {
             (piece.line.a, piece.line.b) == (a.id, b.id) && piece.from.kind == Kind::Vertex(a.id)
         };
-        // The finger may stand at near, when the cell before was added segment by segment.
+        // The finger may be at near if the previous cell was added segment by segment.
         if self.left.last().is_some_and(|piece| joins(piece, cell.left, cell.near)) {
             self.right.extend(self.left.pop());
         }

@@ -40,7 +40,7 @@ impl Horizon {
         if self.up < 0.0 { order.reverse() } else { order }
     }
 
-    /// Whether a sample is beyond a line, as far as rounded numbers tell.
+    /// Whether a sample is beyond a line, if rounded numbers can decide it.
     #[inline]
     pub(super) fn side_of<S: Samples>(
         &self,
