@@ -29,7 +29,7 @@
 use super::back_faces::BackFaces;
 use super::index::{ImageIndex, Visitor};
 use super::segment::Segment;
-use super::shadow::{Sides, Shadow, shadow};
+use super::shadow::{Shadow, Sides, shadow};
 use super::sweep::Sweep;
 use super::{LineCounts, VisibilityOptions};
 use crate::classify::ViewedScene;

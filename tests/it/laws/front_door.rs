@@ -7,7 +7,7 @@ use hiddenline::stages::draw::{DrawOptions, draw};
 use hiddenline::stages::shading::preview::PreviewOptions;
 use hiddenline::stages::strokes::Strokes;
 use hiddenline::{
-    Error, HeightField, HeightOptions, Levels, LineSelection, Mesh, PageOptions, Paper,
+    Aspect, Error, HeightField, HeightOptions, Levels, LineSelection, Mesh, PageOptions, Paper,
     PolygonSoup, Scene, StrokeKind, Surface, SurfaceLines, SurfaceNote, Target, View,
 };
 
@@ -17,20 +17,31 @@ fn length(strokes: &Strokes, kind: StrokeKind) -> f64 {
     of_kind.map(|s| s.points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>()).sum()
 }
 
-/// A wall whose lower half is two boards, beside a bent quadrilateral.
+/// A wall: a plank over two shorter boards.
 fn wall() -> PolygonSoup {
     let at = |x: f64, z: f64| dvec3(x, 0.0, z);
-    let bent = [dvec3(5., 0., 0.), dvec3(6., 0., 0.), dvec3(6., 0.4, 1.), dvec3(5., 1., 1.)];
     let mut soup = PolygonSoup::default();
     for face in [
-        [at(0., 1.), at(4., 1.), at(4., 2.), at(0., 2.)],
+        [at(0., 1.), at(5., 1.), at(5., 2.), at(0., 2.)],
         [at(0., 0.), at(1., 0.), at(1., 1.), at(0., 1.)],
         [at(1., 0.), at(4., 0.), at(4., 1.), at(1., 1.)],
-        bent,
     ] {
         let first = soup.positions.len() as u32;
         soup.positions.extend(face);
         soup.push_face(&[first, first + 1, first + 2, first + 3]);
+    }
+    soup
+}
+
+/// A bumpy net of bent quadrilaterals.
+fn bumps() -> PolygonSoup {
+    let n = 7;
+    let height = |k: u32| f64::from(k.wrapping_mul(0x9e37_79b9) >> 24) / 100.0;
+    let at = |k: u32| dvec3(f64::from(k % n), f64::from(k / n), height(k));
+    let positions = (0..n * n).map(at).collect();
+    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
+    for k in (0..n * (n - 1)).filter(|k| k % n + 1 < n) {
+        soup.push_face(&[k, k + 1, k + n + 1, k + n]);
     }
     soup
 }
@@ -42,21 +53,21 @@ fn exact_drawings_take_faces_as_given() {
     let boundaries = DrawOptions::default().lines(LineSelection::NONE.with(StrokeKind::Boundary));
     let (tidied, _) = scene.draw(&front, &boundaries).strokes(Paper::A4).unwrap();
     let (exact, _) = scene.draw(&front, &boundaries.exact()).strokes(Paper::A4).unwrap();
-    // The rims of the wall and of the bent face; then also the joint of wall and boards, whose upper
-    // side is one edge and whose lower side is two.
-    let rims = 2.0 * (4.0 + 2.0) + 4.0;
-    assert!((length(&tidied, StrokeKind::Boundary) - rims).abs() < 1e-9);
-    assert!((length(&exact, StrokeKind::Boundary) - (rims + 2.0 * 4.0)).abs() < 1e-9);
+    // The rim of the wall; then the rims of the plank and of the boards.
+    assert!((length(&tidied, StrokeKind::Boundary) - 14.0).abs() < 1e-9);
+    assert!((length(&exact, StrokeKind::Boundary) - (12.0 + 10.0)).abs() < 1e-9);
     // A scene without any of that knowledge draws the same.
-    let plain = Scene::new(Mesh::new(wall()).unwrap().0).with_intersections();
-    for lines in [LineSelection::default(), LineSelection::all_edges()] {
-        for (azimuth, elevation) in [(0.0, 0.0), (30.0, 25.0), (160.0, -10.0)] {
-            let camera = View::from_angles(azimuth, elevation)
-                .camera(plain.mesh().bounds().unwrap())
-                .unwrap();
-            let options = DrawOptions::default().lines(lines).exact();
-            let drawn = |scene: &Scene| draw(scene, &camera, &options, 1.0).drawing;
-            assert_eq!(drawn(&scene), drawn(&plain));
+    for soup in [wall(), bumps()] {
+        let scene = Scene::from_polygons(soup.clone()).unwrap();
+        let plain = Scene::new(Mesh::new(soup).unwrap().0).with_intersections();
+        for lines in [LineSelection::default(), LineSelection::all_edges()] {
+            for (azimuth, elevation) in [(0.0, 0.0), (30.0, 25.0), (160.0, -10.0), (75.0, 8.0)] {
+                let view = View::from_angles(azimuth, elevation);
+                let camera = view.camera(plain.mesh().bounds().unwrap()).unwrap();
+                let options = DrawOptions::default().lines(lines).exact();
+                let drawn = |scene: &Scene| draw(scene, &camera, &options, 1.0).drawing;
+                assert_eq!(drawn(&scene), drawn(&plain));
+            }
         }
     }
 }
@@ -96,7 +107,15 @@ fn surfaces_come_from_formulas_functions_and_files() {
     assert!((length_of(&function) - expected).abs() < 1e-9);
     let space =
         Surface::parametric_fn((-1.0, 1.0), (0.0, 4.0), (11, 11), |u, v| dvec3(u, v, plane(u, v)));
-    assert!((length_of(&space.unwrap()) - expected).abs() < 1e-9);
+    let space = space.unwrap();
+    assert!((length_of(&space) - expected).abs() < 1e-9);
+    let slanted = |surface: Surface| {
+        let surface = surface.aspect(Aspect::Data);
+        let drawing = surface.draw(&View::isometric(), &lines);
+        length(&drawing.strokes(Paper::A4).unwrap().0, StrokeKind::Grid)
+    };
+    let [a, b, c] = [formula, function, space].map(slanted);
+    assert!((a - b).abs() < 1e-9 && (a - c).abs() < 1e-9, "{a} {b} {c}");
 
     let path = std::env::temp_dir().join(format!("hiddenline-heights-{}.csv", std::process::id()));
     let row = |y: usize| (0..11).map(move |x| format!("{}", x + y)).collect::<Vec<_>>().join(",");
@@ -132,7 +151,7 @@ fn parametric_functions_close() {
 #[test]
 fn sheets_of_surfaces_say_what_is_worth_knowing() {
     let page = PageOptions::from(Paper::A5);
-    let steps = Surface::formula("floor(x)").unwrap();
+    let steps = Surface::formula("x < 0.3 ? 0 : 1").unwrap().samples(9, 9);
     let sheet = steps.draw(&View::default(), &SurfaceLines::default()).on(page).unwrap();
     assert!(matches!(sheet.notes(), [SurfaceNote::OffFunction { .. }]), "{:?}", sheet.notes());
     let smooth = Surface::formula("x + y").unwrap();

@@ -279,10 +279,14 @@ fn help_has_examples_and_completions_and_manual_are_printed() {
 #[test]
 fn names_are_listed_in_the_help_and_suggested_for_others() {
     let (_keep, folder) = with_cube();
-    let help = text(&hiddenline(&folder, &["draw", "--help"]).stdout);
+    let help = text(&hiddenline(&folder, &["draw", "-h"]).stdout);
     for names in ["perspective, orthographic", "svg, hpgl, gcode", "path, polyline", "front, right"]
     {
         assert!(help.contains(names), "{names}");
+    }
+    let help = text(&hiddenline(&folder, &["draw", "--help"]).stdout);
+    for described in ["- orthographic: Lines of sight are parallel", "- dashed:", "- appel:"] {
+        assert!(help.contains(described), "{described}");
     }
     for (option, typed, meant) in [
         ("--view", "isometrc", "isometric"),
@@ -293,4 +297,23 @@ fn names_are_listed_in_the_help_and_suggested_for_others() {
         let output = hiddenline(&folder, &["draw", "cube.obj", option, typed]);
         assert_fails(&output, 2, &format!("'{meant}'"));
     }
+}
+
+#[test]
+fn the_margin_is_10_mm_but_none_for_finished_drawings() {
+    let (_keep, folder) = with_cube();
+    let json = |more: &[&str]| {
+        let command = [&["draw", "cube.obj", "--format", "json", "-o", "-", "-q"], more].concat();
+        text(&hiddenline(&folder, &command).stdout)
+    };
+    assert_eq!(json(&[]), json(&["--margin", "10"]));
+    assert_ne!(json(&[]), json(&["--margin", "5"]));
+    hiddenline(&folder, &["draw", "cube.obj", "-o", "cube.svg", "-q"]);
+    let dxf = |more: &[&str]| {
+        let options = ["--fit", "--format", "dxf", "-o", "-", "-q"];
+        let command = [&["optimize", "cube.svg"], &options[..], more].concat();
+        text(&hiddenline(&folder, &command).stdout)
+    };
+    assert_eq!(dxf(&[]), dxf(&["--margin", "0"]));
+    assert_ne!(dxf(&[]), dxf(&["--margin", "5"]));
 }

@@ -243,8 +243,8 @@ fn wrong_names_are_bad_usage() {
     fails(&folder, &["draw", "cube.obj", "--machine", "axidrew"], 2, "did you mean axidraw");
     fails(&folder, &["draw", "cube.obj", "--preset", "none"], 2, "no preset called `none`");
     fails(&folder, &["surface", "x", "--samples", "100000"], 2, "are more than 100000000");
-    fails(&folder, &["preview", "cube.obj", "--light", "0,0,0"], 2, "no direction");
-    fails(&folder, &["fill", "cube.obj", "--light", "0,0,0"], 2, "no direction");
+    fails(&folder, &["preview", "cube.obj", "--light", "0,0,0"], 2, "not a direction");
+    fails(&folder, &["fill", "cube.obj", "--light", "0,0,0"], 2, "not a direction");
 }
 
 #[test]
