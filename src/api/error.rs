@@ -43,7 +43,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
         /// Why.
-        error: HeightError,
+        error: Box<HeightError>,
     },
     /// The surface cannot be drawn.
     #[error(transparent)]

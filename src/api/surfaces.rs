@@ -77,7 +77,7 @@ impl HeightField {
         let path = path.as_ref();
         let bytes = fs::read(path).map_err(|error| Error::Open { path: path.to_owned(), error })?;
         read_heights(&bytes, options)
-            .map_err(|error| Error::Heights { path: path.to_owned(), error })
+            .map_err(|error| Error::Heights { path: path.to_owned(), error: Box::new(error) })
     }
 }
 
