@@ -66,6 +66,12 @@ pub enum Placement {
     },
     /// The height between the margins is exactly the vertical field of view.
     FieldOfView,
+    /// The height between the margins shows this height at the target, which is in the middle, in
+    /// either projection.
+    ViewHeight {
+        /// The height in model units.
+        model_units: f64,
+    },
 }
 
 /// Paper, margin and placement.
@@ -123,6 +129,12 @@ impl PageOptions {
     #[must_use]
     pub fn scale(self, mm_per_unit: f64) -> Self {
         Self { placement: Placement::Scale { mm_per_unit }, ..self }
+    }
+
+    /// Shows this height, in model units at the target, with the target in the middle.
+    #[must_use]
+    pub fn view_height(self, model_units: f64) -> Self {
+        Self { placement: Placement::ViewHeight { model_units }, ..self }
     }
 
     /// Shows exactly the field of view, in perspective.
@@ -245,6 +257,10 @@ impl Page {
                 height_mm: paper.height_mm,
             });
         }
+        let units_per_image = match camera.projection() {
+            Projection::Perspective { .. } => camera.forward().length(),
+            Projection::Orthographic => 1.0,
+        };
         let (scale, center) = match options.placement {
             Placement::Fit => {
                 let scale = (usable / (high - low)).min_element();
@@ -252,11 +268,10 @@ impl Page {
                 (if scale.is_finite() { scale } else { 1.0 }, low / 2.0 + high / 2.0)
             }
             Placement::Scale { mm_per_unit } => {
-                let units_per_image = match camera.projection() {
-                    Projection::Perspective { .. } => camera.forward().length(),
-                    Projection::Orthographic => 1.0,
-                };
                 (mm_per_unit * units_per_image, low / 2.0 + high / 2.0)
+            }
+            Placement::ViewHeight { model_units } => {
+                (usable.y / model_units * units_per_image, DVec2::ZERO)
             }
             Placement::FieldOfView => match camera.projection() {
                 Projection::Perspective { fov_deg, .. } => {

@@ -68,6 +68,12 @@ pub(super) struct PageArgs {
     /// Fit the field of view, not the scene, between the upper and the lower margin
     #[arg(long)]
     fit_fov: bool,
+    /// Show this height, in model units at the target, between the upper and the lower margin
+    ///
+    /// The target is in the middle of the page. What lies outside the margins is cut off.
+    #[arg(long, value_name = "HEIGHT", value_parser = values::positive)]
+    #[arg(conflicts_with_all = ["drawing_scale", "fit_fov"])]
+    view_height: Option<f64>,
     /// Width of the pen's line
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     #[arg(default_value_t = DEFAULT_PEN_WIDTH_MM)]
@@ -102,10 +108,11 @@ impl PageArgs {
             paper: self.paper.paper().unwrap_or(Paper::A4),
             orientation: self.paper.orientation(),
             margin_mm: self.paper.margin_mm().unwrap_or(DEFAULT_MARGIN_MM),
-            placement: match (self.drawing_scale, self.fit_fov) {
+            placement: match (self.drawing_scale, self.view_height) {
                 (Some(scale), _) => Placement::Scale { mm_per_unit: scale * self.unit_mm() },
-                (None, true) => Placement::FieldOfView,
-                (None, false) => Placement::Fit,
+                (None, Some(model_units)) => Placement::ViewHeight { model_units },
+                (None, None) if self.fit_fov => Placement::FieldOfView,
+                (None, None) => Placement::Fit,
             },
         }
     }

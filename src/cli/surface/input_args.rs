@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::formula::{Formula, Parameter, Variables};
 use hiddenline::stages::surface::{Aspect, Duplicates, HeightOptions, MAX_SAMPLES};
 
 use super::input::{SurfaceInput, SurfaceSource};
@@ -43,6 +43,13 @@ pub(in crate::cli) struct SurfaceInputArgs {
     /// and by --lines border.
     #[arg(long = "where", value_name = "EXPR", requires = "expression")]
     domain: Option<String>,
+    /// Give a parameter of the formulas a value, as in a=2; can be given several times
+    ///
+    /// The name is then a constant in all formulas and in --where. It must not be one that formulas
+    /// know already, such as x or pi.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parameter, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["grid", "points"])]
+    set: Vec<Parameter>,
     /// Range of x [default: -5:5, for a file 0 to columns - 1]
     #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
     x: Option<(f64, f64)>,
@@ -82,6 +89,12 @@ impl SurfaceInputArgs {
         default_samples: usize,
     ) -> Result<Option<SurfaceInput>, String> {
         let samples = self.samples.unwrap_or((default_samples, default_samples));
+        let parameters = self.set;
+        for (i, parameter) in parameters.iter().enumerate() {
+            if parameters[..i].iter().any(|other| other.name() == parameter.name()) {
+                return Err(format!("--set gives `{}` two values", parameter.name()));
+            }
+        }
         let mut default_aspect = Aspect::Box;
         let input = if let Some(path) = self.grid {
             SurfaceSource::File(path)
@@ -89,14 +102,14 @@ impl SurfaceInputArgs {
             SurfaceSource::Points(path)
         } else if let Some(texts) = self.parametric {
             default_aspect = Aspect::Data;
-            let formulas = parsed(&texts, Variables::Parameters)?;
+            let formulas = parsed(&texts, Variables::Parameters, &parameters)?;
             let formulas = formulas.try_into().map_err(|_| "give three formulas")?;
             let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
             SurfaceSource::Parametric { formulas: Box::new(formulas), u, v, samples }
         } else if !texts.is_empty() {
-            let formulas = parsed(&texts, Variables::Plane)?;
+            let formulas = parsed(&texts, Variables::Plane, &parameters)?;
             let domain = self.domain.map(|text| {
-                let parsed = Formula::parse(&text, Variables::Plane);
+                let parsed = Formula::parse_with(&text, Variables::Plane, &parameters);
                 let parsed = parsed.map_err(|error| in_formula("--where", &text, &error));
                 parsed.map(|formula| (formula, text))
             });
@@ -106,10 +119,12 @@ impl SurfaceInputArgs {
             if self.nodata.is_some() {
                 return Err("--nodata is for --grid and --points".into());
             }
-            if is_given || self.aspect.is_some() || self.z_scale != 1.0 {
-                return Err("--x, --y, --samples, --z-scale and --aspect are for surfaces: give \
+            if is_given || self.aspect.is_some() || self.z_scale != 1.0 || !parameters.is_empty() {
+                return Err(
+                    "--x, --y, --set, --samples, --z-scale and --aspect are for surfaces: give \
                             --expr, --grid, --points or --parametric"
-                    .into());
+                        .into(),
+                );
             }
             return Ok(None);
         };
@@ -128,13 +143,18 @@ impl SurfaceInputArgs {
     }
 }
 
-fn parsed(texts: &[String], variables: Variables) -> Result<Vec<Formula>, String> {
+fn parsed(
+    texts: &[String],
+    variables: Variables,
+    parameters: &[Parameter],
+) -> Result<Vec<Formula>, String> {
     let parse = |(k, text): (usize, &String)| {
         let which = match texts.len() {
             1 => "the formula".to_owned(),
             n => format!("formula {} of {n}", k + 1),
         };
-        Formula::parse(text, variables).map_err(|error| in_formula(&which, text, &error))
+        let parsed = Formula::parse_with(text, variables, parameters);
+        parsed.map_err(|error| in_formula(&which, text, &error))
     };
     texts.iter().enumerate().map(parse).collect()
 }
@@ -145,6 +165,12 @@ fn constant(text: &str) -> Result<f64, String> {
     let formula = parsed.map_err(|error| in_formula(&format!("`{text}`"), text, &error))?;
     let value = formula.value(f64::NAN, f64::NAN);
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not a finite number")) }
+}
+
+/// A parameter of formulas as `a=2`; the value may be a formula such as `2*pi`.
+fn parameter(text: &str) -> Result<Parameter, String> {
+    let (name, value) = text.split_once('=').ok_or("give a name and a value, as in a=2")?;
+    Parameter::new(name.trim(), constant(value.trim())?).map_err(|error| error.to_string())
 }
 
 /// Two numbers, the smaller first, with a colon between them.

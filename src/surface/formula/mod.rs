@@ -20,9 +20,11 @@
 //! but only the selected value is used. For names see [`FUNCTIONS`] and [`CONSTANTS`].
 
 mod lexer;
+mod parameter;
 mod parser;
 mod tape;
 
+pub use parameter::{Parameter, ParameterError};
 pub use tape::{CONSTANTS, FUNCTIONS};
 
 use tape::Tape;
@@ -153,11 +155,30 @@ impl Formula {
     /// # Ok::<(), hiddenline::stages::surface::formula::FormulaError>(())
     /// ```
     pub fn parse(text: &str, variables: Variables) -> Result<Self, FormulaError> {
+        Self::parse_with(text, variables, &[])
+    }
+
+    /// Parses a formula that may also name parameters, which are constants in it. O(length · parameters).
+    ///
+    /// # Errors
+    /// The first syntax error in the text.
+    ///
+    /// ```
+    /// use hiddenline::stages::surface::formula::{Formula, Parameter, Variables};
+    /// let a = Parameter::new("a", 3.0)?;
+    /// assert_eq!(Formula::parse_with("a*x", Variables::Plane, &[a])?.value(2.0, 0.0), 6.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn parse_with(
+        text: &str,
+        variables: Variables,
+        parameters: &[Parameter],
+    ) -> Result<Self, FormulaError> {
         if text.len() > MAX_LENGTH {
             return Err(FormulaError { column: 1, problem: Problem::TooLong });
         }
         let tokens = lexer::tokens(text)?;
-        Ok(Self { tape: parser::parse(&tokens, variables)? })
+        Ok(Self { tape: parser::parse(&tokens, variables, parameters)? })
     }
 
     /// The value at one pair of variables; NaN where the formula is undefined.

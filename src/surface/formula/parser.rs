@@ -2,13 +2,18 @@
 
 use super::lexer::{Placed, Token};
 use super::tape::{CONSTANTS, FUNCTIONS, Op, Takes, Tape, function};
-use super::{FormulaError, MAX_DEPTH, Problem, Variables};
+use super::{FormulaError, MAX_DEPTH, Parameter, Problem, Variables};
 
-pub(super) fn parse(tokens: &[Placed], variables: Variables) -> Result<Tape, FormulaError> {
+pub(super) fn parse(
+    tokens: &[Placed],
+    variables: Variables,
+    parameters: &[Parameter],
+) -> Result<Tape, FormulaError> {
     if let Some(left) = left_side(tokens, variables) {
         return Err(FormulaError { column: 1, problem: Problem::Assignment(left) });
     }
-    let mut parser = Parser { tokens, at: 0, depth: 0, variables, tape: Tape::default() };
+    let tape = Tape::default();
+    let mut parser = Parser { tokens, at: 0, depth: 0, variables, parameters, tape };
     parser.expression(0)?;
     match parser.peek() {
         Token::End => Ok(parser.tape),
@@ -48,6 +53,7 @@ struct Parser<'a> {
     at: usize,
     depth: usize,
     variables: Variables,
+    parameters: &'a [Parameter],
     tape: Tape,
 }
 
@@ -211,7 +217,11 @@ impl<'a> Parser<'a> {
             let constant = CONSTANTS.iter().find(|(constant, _)| *constant == name);
             constant.map(|(_, value)| Op::Constant(*value))
         };
-        let op = variable(name, self.variables).or_else(constant);
+        let parameter = || {
+            let found = self.parameters.iter().find(|parameter| parameter.name() == name);
+            found.map(|parameter| Op::Constant(parameter.value()))
+        };
+        let op = variable(name, self.variables).or_else(constant).or_else(parameter);
         let op = op.ok_or_else(|| self.fails_at(at, unknown(name, self.variables)))?;
         self.tape.push(op);
         Ok(())

@@ -8,6 +8,7 @@ mod hidden_levels;
 mod materials;
 mod mistakes;
 mod models;
+mod parameters;
 mod plotting;
 mod preview;
 mod settings;
