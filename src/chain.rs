@@ -117,8 +117,9 @@ fn class(piece: &Piece, options: &ChainOptions) -> (u32, u32) {
     (kind << 1 | u32::from(piece.outline), qi)
 }
 
-/// Calls `f` with each trail of joined pieces, as the ends at which they are entered.
-fn for_each_trail(links: &[u32], mut f: impl FnMut(&[u32])) {
+/// Calls `f` with each trail of joined pieces, as the ends at which they are entered. `links` has, for
+/// each end of each piece (numbered `2 · piece + side`), the end that it is joined to, or `u32::MAX`.
+pub(crate) fn for_each_trail(links: &[u32], mut f: impl FnMut(&[u32])) {
     let mut is_drawn = vec![false; links.len() / 2];
     let mut trail = Vec::new();
     // Trails with loose ends first, from the end that comes first; then closed ones.

@@ -1,5 +1,6 @@
 //! From a scene and a camera to strokes, stage by stage.
 
+pub mod draft;
 pub mod meshed;
 pub mod surface;
 

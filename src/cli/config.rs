@@ -5,6 +5,7 @@
 //! for `--page`), then `./hiddenline.toml`, then the user's file. A setting is dropped if its option,
 //! or one that conflicts with it, is set with higher precedence.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::ffi::OsString;
@@ -30,12 +31,17 @@ const USER_FILE: &str = "hiddenline/config.toml";
 /// How the names of environment variables begin.
 const PREFIX: &str = "HIDDENLINE_";
 /// Commands that settings apply to.
-const COMMANDS: [&str; 5] = ["draw", "surface", "fill", "preview", "optimize"];
+const COMMANDS: [&str; 6] = ["draw", "surface", "fill", "preview", "view", "optimize"];
 /// Settings for pens, which do not apply to filled areas.
 const FOR_PENS: [&str; 3] = ["format", "machine", "gcode-profile"];
 
 /// The arguments with all settings, without the program's name.
 static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+thread_local! {
+    /// What this thread draws as if it had been typed: the viewer draws many command lines.
+    static INSTEAD: RefCell<Option<Vec<OsString>>> = const { RefCell::new(None) };
+}
 
 /// A configuration file.
 #[derive(Debug, Default, Deserialize)]
@@ -105,8 +111,15 @@ impl Setting {
 
 /// The resulting arguments, without the program's name.
 pub(super) fn arguments() -> impl Iterator<Item = OsString> {
-    let arguments = ARGUMENTS.get().cloned();
+    let instead = INSTEAD.with_borrow(Clone::clone);
+    let arguments = instead.or_else(|| ARGUMENTS.get().cloned());
     arguments.unwrap_or_else(|| std::env::args_os().skip(1).collect()).into_iter()
+}
+
+/// From now on, this thread works as if these arguments had been typed after the program's name.
+#[cfg(feature = "view")]
+pub(super) fn type_instead(arguments: Vec<OsString>) {
+    INSTEAD.set(Some(arguments));
 }
 
 /// Whether an option, as in `--page`, was typed rather than set in a file or in the environment.
@@ -115,7 +128,10 @@ pub(super) fn is_typed(option: &str) -> bool {
         let argument = argument.to_string_lossy();
         argument.strip_prefix(option).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
     };
-    std::env::args_os().skip(1).any(is_it)
+    match INSTEAD.with_borrow(Clone::clone) {
+        Some(arguments) => arguments.into_iter().any(is_it),
+        None => std::env::args_os().skip(1).any(is_it),
+    }
 }
 
 /// Parses what was typed together with the settings. Bad usage ends the program.

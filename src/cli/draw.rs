@@ -1,24 +1,30 @@
 //! `hiddenline draw`: from model files to a drawing's file.
 
 mod lines;
+#[cfg(feature = "view")]
+mod live;
 
 use std::error::Error;
 
 use clap::Args;
 use glam::DVec2;
+use hiddenline::stages::camera::Camera;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
 use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_line_pens};
+use hiddenline::stages::strokes::Strokes;
 use hiddenline::stages::write::Format;
 use hiddenline::stages::write::dxf::DxfScale;
 
 use self::lines::LineArgs;
+#[cfg(feature = "view")]
+pub(super) use self::live::{Live, Turned};
 use super::camera::{CameraArgs, ViewSource};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::{self, PageArgs};
-use super::paper::{PlacedPage, Run};
+use super::paper::{Notes, PlacedPage, Run};
 use super::scene::Subject;
 use super::{Refused, config, source};
 
@@ -104,6 +110,19 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let lines = Some(job.draw.lines);
     let Subject { scene, camera, notes } =
         Subject::read(read, &job.view, lines, !job.draw.exact, &run.progress, &mut run.stats)?;
+    let (drawing, sheet) = strokes(job, &scene, camera, notes, &mut run)?;
+    drop(scene);
+    run.draw(&drawing, &sheet, plot_options(job), &OptimizeOptions::for_drawings())
+}
+
+/// Draws the scene for its page.
+fn strokes(
+    job: &Job,
+    scene: &Scene,
+    camera: Camera,
+    notes: Notes,
+    run: &mut Run,
+) -> Result<(Strokes, PlacedPage), Box<dyn Error>> {
     // Without --unit the page was made for millimeters.
     let unit_mm = notes.unit_mm.unwrap_or(1.0);
     let page = page::in_unit(job.page, unit_mm);
@@ -112,14 +131,13 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.dxf_scale = page::dxf_in_unit(job.dxf_scale, &page, unit_mm);
     run.progress.stage("drawing");
     let sheet = PlacedPage::new(scene.extent(&camera), camera, &page)?;
-    let drawn = draw(&scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
-    run.stats.count(MeshSize::of(&scene));
+    let drawn = draw(scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
+    run.stats.count(MeshSize::of(scene));
     run.stats.add(&drawn);
     if drawn.drawing.is_empty() {
-        run.empty_because = why_empty(job, &scene, &sheet, drawn.n_lines);
+        run.empty_because = why_empty(job, scene, &sheet, drawn.n_lines);
     }
-    drop(scene);
-    run.draw(&drawn.drawing, &sheet, plot_options(job), &OptimizeOptions::for_drawings())
+    Ok((drawn.drawing, sheet))
 }
 
 /// Why a drawing has no strokes, and what helps.

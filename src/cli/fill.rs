@@ -95,7 +95,7 @@ struct EdgeArgs {
     #[arg(long, overrides_with = "edges")]
     no_edges: bool,
     /// Kinds of line on top, as for `draw`
-    #[arg(long, value_name = "KINDS", value_parser = values::lines)]
+    #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     lines: LineSelection,
     /// Faces that meet at more than this angle make a crease
@@ -200,7 +200,9 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         let picture = Picture { job, page, scene: &scene, prepared: &prepared, fill, frame: None };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
-    let Run { output, start, progress, stats, mut notes, unit_mm, empty_because, dxf_scale } = run;
+    let Run {
+        output, start, progress, stats, mut notes, unit_mm, empty_because, dxf_scale, ..
+    } = run;
     drop(progress);
     let cameras = camera.turntable(n.into())?;
     let frame = Some(scene.extent_of_views(&cameras));
@@ -218,6 +220,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
             unit_mm,
             empty_because,
             dxf_scale,
+            kept: None,
         };
         let path = output.path.as_deref().map(|path| numbered(path, number));
         picture.write(camera, run, path.as_deref())?;

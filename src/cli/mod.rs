@@ -26,6 +26,8 @@ mod suggestion;
 mod surface;
 mod usage;
 mod values;
+#[cfg(feature = "view")]
+mod view;
 
 use std::error::Error;
 use std::io;
@@ -40,6 +42,8 @@ use self::fill::FillArgs;
 use self::optimize::OptimizeArgs;
 use self::preview::PreviewArgs;
 use self::surface::SurfaceArgs;
+#[cfg(feature = "view")]
+use self::view::ViewArgs;
 
 /// Exact hidden-line drawings of 3D models, for print and pen plotters
 #[derive(Parser)]
@@ -72,6 +76,9 @@ enum Command {
     Fill(Box<FillArgs>),
     /// Make a shaded picture of models
     Preview(Box<PreviewArgs>),
+    /// Turn a model in the browser, with its hidden lines removed as you turn it
+    #[cfg(feature = "view")]
+    View(ViewArgs),
     /// Join and order the strokes of any line SVG for a plotter
     Optimize(Box<OptimizeArgs>),
     /// Show settings from configuration files and the environment
@@ -129,8 +136,8 @@ impl From<machine::MachineError> for Refused {
 
 /// Runs the command that was typed.
 pub(crate) fn run() -> ExitCode {
-    let typed = match config::with_settings(usage::command()) {
-        Ok(matches) => Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()),
+    let matches = match config::with_settings(usage::command()) {
+        Ok(matches) => matches,
         Err(error) => match error.downcast_ref() {
             Some(no_preset @ ConfigError::NoPreset { command, .. }) => {
                 usage::exit_with(command, &no_preset.to_string())
@@ -138,17 +145,23 @@ pub(crate) fn run() -> ExitCode {
             _ => return failed(error.as_ref()),
         },
     };
+    let typed = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     match typed.color {
         Color::Auto => {}
         Color::Always => anstream::ColorChoice::Always.write_global(),
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
     let result = match typed.command {
-        Command::Draw(args) => started("draw", args.job(), draw::run),
-        Command::Surface(args) => started("surface", args.job(), surface::run),
-        Command::Fill(args) => started("fill", args.job(), fill::run),
-        Command::Preview(args) => started("preview", args.job(), preview::run),
-        Command::Optimize(args) => started("optimize", args.job(), optimize::run),
+        Command::Draw(args) => started("draw", args.job(), |job| draw::run(&job)),
+        Command::Surface(args) => started("surface", args.job(), |job| surface::run(&job)),
+        Command::Fill(args) => started("fill", args.job(), |job| fill::run(&job)),
+        Command::Preview(args) => started("preview", args.job(), |job| preview::run(&job)),
+        #[cfg(feature = "view")]
+        Command::View(args) => match matches.subcommand_matches("view") {
+            Some(matches) => started("view", args.job(usage::command(), matches), view::run),
+            None => Ok(()),
+        },
+        Command::Optimize(args) => started("optimize", args.job(), |job| optimize::run(&job)),
         Command::Config { command: ConfigCommand::Show { preset } } => {
             config::show(preset.as_deref())
         }
@@ -175,10 +188,10 @@ fn failed(error: &dyn Error) -> ExitCode {
 fn started<J>(
     name: &str,
     job: Result<J, Refused>,
-    run: impl FnOnce(&J) -> Result<(), Box<dyn Error>>,
+    run: impl FnOnce(J) -> Result<(), Box<dyn Error>>,
 ) -> Result<(), Box<dyn Error>> {
     match job {
-        Ok(job) => run(&job),
+        Ok(job) => run(job),
         Err(Refused::Usage(message)) => usage::exit_with(name, &message),
         Err(Refused::Failed(error)) => Err(error),
     }

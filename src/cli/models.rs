@@ -1,14 +1,18 @@
 //! Model files: which ones, in what format, and how they become one mesh.
 
+use std::collections::HashMap;
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use glam::DVec3;
 use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::stages::model::diagnosis::{open_seams, seems_y_up};
 use hiddenline::stages::model::mesh::{Mesh, Repairs};
-use hiddenline::stages::read::{Fault, Model, ModelFormat, ReadError, material_files, read_file};
+use hiddenline::stages::read::{
+    Fault, Model, ModelFormat, ReadError, material_files, read_bytes, read_file,
+};
 
 use super::choice::one_of;
 use super::messages::counted;
@@ -55,7 +59,12 @@ pub(super) struct ModelFiles {
     /// Millimeters in a model unit, which overrides the files.
     unit_mm: Option<f64>,
     arrangement: Arrangement,
+    held: HeldFiles,
 }
+
+/// Contents of files that are not read from disk, by name: standard input, which can be read only once,
+/// and files that were dropped on a page.
+pub(super) type HeldFiles = Arc<HashMap<PathBuf, Vec<u8>>>;
 
 impl ModelArgs {
     /// Checks what clap cannot; the error is a message about usage.
@@ -69,6 +78,7 @@ impl ModelArgs {
             up_axis: self.up_axis,
             unit_mm: None,
             arrangement: Arrangement { weld_distance: self.weld, merge_equal_faces: true },
+            held: HeldFiles::default(),
             models: self.models,
         })
     }
@@ -106,13 +116,28 @@ impl ModelFiles {
         self
     }
 
+    /// The same with files whose contents are held in memory.
+    #[cfg(feature = "view")]
+    #[must_use]
+    pub(super) fn holding(mut self, held: HeldFiles) -> Self {
+        self.held = held;
+        self
+    }
+
+    fn read_one(&self, path: &Path) -> Result<Model, ReadError> {
+        match self.held.get(path) {
+            Some(bytes) => read_bytes(&path.to_string_lossy(), bytes, self.input_format),
+            None => read_file(path, self.input_format),
+        }
+    }
+
     /// Reads them all into one mesh.
     pub(super) fn read(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         let mut notes = Notes::default();
         let mut models = Vec::with_capacity(self.models.len());
         let mut repairs = Repairs::default();
         for (path, &pose) in self.models.iter().zip(&self.poses) {
-            let model = read_file(path, self.input_format).map_err(with_remedy)?;
+            let model = self.read_one(path).map_err(with_remedy)?;
             notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
             notes.hints.extend(self.up_axis_hint(&model, &title(path)));
             repairs += model.repairs;

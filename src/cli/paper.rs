@@ -25,7 +25,7 @@ use super::stats::{PlotStats, Stats, peak_bytes};
 use super::{file, machine, messages};
 
 /// What there is to report once all went well.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Notes {
     pub(super) warnings: Vec<String>,
     /// What may help; unlike warnings, --strict lets them pass.
@@ -57,9 +57,27 @@ pub(super) struct Run<'a> {
     pub(super) dxf_scale: DxfScale,
     /// Why there are no strokes, in case there are none.
     pub(super) empty_because: String,
+    /// Where the result goes instead of a file, and what there is to tell instead of the terminal.
+    pub(super) kept: Option<&'a mut Kept>,
+}
+
+/// The result of a run in memory.
+#[derive(Default)]
+pub(super) struct Kept {
+    /// Whether the file's content is wanted, rather than the plot.
+    pub(super) wants_bytes: bool,
+    /// The file's content, if wanted.
+    pub(super) bytes: Vec<u8>,
+    /// The plot as it would be written.
+    pub(super) plot: Option<Plot>,
+    /// The page that it is on.
+    pub(super) sheet: Option<PlacedPage>,
+    pub(super) notes: Notes,
+    pub(super) stats: Stats,
 }
 
 /// A page, and what it shows from where.
+#[derive(Clone)]
 pub(super) struct PlacedPage {
     pub(super) camera: Camera,
     pub(super) page: Page,
@@ -154,7 +172,28 @@ impl<'a> Run<'a> {
             unit_mm: 1.0,
             empty_because,
             dxf_scale: DxfScale::default(),
+            kept: None,
         })
+    }
+
+    /// A run that writes no file, prints nothing, and leaves its result in `kept`.
+    #[cfg(feature = "view")]
+    pub(super) fn in_memory(
+        output: &'a OutputOptions,
+        progress: Progress,
+        kept: &'a mut Kept,
+    ) -> Self {
+        Self {
+            output,
+            start: Instant::now(),
+            progress,
+            stats: Stats { threads: rayon::current_num_threads(), ..Stats::default() },
+            notes: Notes { warnings: output.warnings.clone(), ..Notes::default() },
+            unit_mm: 1.0,
+            dxf_scale: DxfScale::default(),
+            empty_because: "nothing is in view".to_owned(),
+            kept: Some(kept),
+        }
     }
 
     /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
@@ -165,6 +204,9 @@ impl<'a> Run<'a> {
         plot: PlotOptions,
         usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
+        if let Some(kept) = &mut self.kept {
+            kept.sheet = Some(sheet.clone());
+        }
         let PlacedPage { camera, page, .. } = sheet;
         let paper = page.paper.description();
         if self.output.format == Format::Json {
@@ -243,6 +285,15 @@ impl<'a> Run<'a> {
         let is_empty =
             plot.layers.iter().all(|layer| layer.lines.is_empty() && layer.fills.is_empty());
         let what = Written { paper, contents: described(&plot, &done) };
+        if let Some(kept) = self.kept.take_if(|kept| !kept.wants_bytes) {
+            if is_empty {
+                self.notes.warnings.push(format!("the drawing is empty: {}", self.empty_because));
+            }
+            self.stats.seconds.total = self.start.elapsed().as_secs_f64();
+            kept.plot = Some(plot);
+            (kept.notes, kept.stats) = (self.notes, self.stats);
+            return Ok(());
+        }
         let target = match &output.target {
             Some(Target::Dxf(_)) => Target::Dxf(self.dxf_scale),
             Some(target) => target.clone(),
@@ -282,9 +333,10 @@ impl<'a> Run<'a> {
             Ok(())
         };
         timed(&mut write_seconds, || -> Result<(), Box<dyn Error>> {
-            match path {
-                None => Ok(file::write_to_stdout(write)?),
-                Some(path) => file::write_to_file(path, write)
+            match (path, &mut self.kept) {
+                (_, Some(kept)) => Ok(write(&mut kept.bytes)?),
+                (None, None) => Ok(file::write_to_stdout(write)?),
+                (Some(path), None) => file::write_to_file(path, write)
                     .map_err(|error| format!("cannot write {}: {error}", path.display()).into()),
             }
         })?;
@@ -294,6 +346,10 @@ impl<'a> Run<'a> {
         stats.seconds += elsewhere;
         stats.seconds.write += (write_seconds - elsewhere.sum()).max(0.0);
         stats.seconds.total = self.start.elapsed().as_secs_f64();
+        if let Some(kept) = self.kept {
+            (kept.notes, kept.stats) = (self.notes, self.stats);
+            return Ok(());
+        }
         stats.peak_bytes = peak_bytes();
         if !output.quiet {
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));

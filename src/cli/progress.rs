@@ -1,6 +1,7 @@
 //! A line on the terminal that shows the current stage once the work takes over a second, and how much
 //! of it is done if that is known.
 
+use std::cell::Cell;
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
@@ -15,10 +16,16 @@ const STEPS: u64 = 1000;
 const WITHOUT_SHARE: &str = "{spinner} {msg} {elapsed}";
 const WITH_SHARE: &str = "{spinner} {msg} {bar:30} {percent}% {elapsed}, {eta} left";
 
+/// Is told the stage, and which share of it is done where that is known.
+pub(super) type Listener = Box<dyn Fn(&'static str, Option<f64>)>;
+
 /// Shown until it is dropped.
 pub(super) struct Progress {
     bar: ProgressBar,
     waiting: Option<(Sender<()>, JoinHandle<()>)>,
+    stage: Cell<&'static str>,
+    /// Who is told instead of the terminal.
+    listener: Option<Listener>,
 }
 
 impl Progress {
@@ -26,7 +33,7 @@ impl Progress {
     pub(super) fn new(quiet: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         if quiet || !std::io::stderr().is_terminal() {
-            return Self { bar, waiting: None };
+            return Self { bar, waiting: None, stage: Cell::new(""), listener: None };
         }
         let (done, is_done) = mpsc::channel::<()>();
         let late = bar.clone();
@@ -36,13 +43,26 @@ impl Progress {
                 late.enable_steady_tick(Duration::from_millis(100));
             }
         });
-        let progress = Self { bar, waiting: Some((done, thread)) };
+        let waiting = Some((done, thread));
+        let progress = Self { bar, waiting, stage: Cell::new(""), listener: None };
         progress.set_style(WITHOUT_SHARE);
+        progress
+    }
+
+    /// Tells `listener` instead of the terminal.
+    #[cfg(feature = "view")]
+    pub(super) fn heard_by(listener: Listener) -> Self {
+        let mut progress = Self::new(true);
+        progress.listener = Some(listener);
         progress
     }
 
     /// Shows the current stage.
     pub(super) fn stage(&self, what: &'static str) {
+        self.stage.set(what);
+        if let Some(listener) = &self.listener {
+            listener(what, None);
+        }
         self.bar.set_message(what);
         if self.bar.length().is_some() {
             self.bar.unset_length();
@@ -52,6 +72,9 @@ impl Progress {
 
     /// Shows how much of the stage is done, from 0 to 1, and the time left.
     pub(super) fn share(&self, share: f64) {
+        if let Some(listener) = &self.listener {
+            listener(self.stage.get(), Some(share));
+        }
         if self.waiting.is_none() {
             return;
         }

@@ -36,12 +36,28 @@ impl Subject {
         let (mesh, notes) = timed(&mut stats.seconds.read, mesh)?;
         let camera = view.camera(mesh.bounds().unwrap_or_default())?;
         progress.stage("finding edges");
-        let crosses = lines.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
-        let scene = timed(&mut stats.seconds.topology, || {
-            let scene = Scene::new(mesh);
-            let scene = if finds_bends { scene.with_bends().with_flush_edges() } else { scene };
-            if crosses { scene.with_intersections() } else { scene }
-        });
+        let needs = Needs::new(lines, finds_bends);
+        let scene = timed(&mut stats.seconds.topology, || needs.scene(mesh));
         Ok(Self { scene, camera, notes })
+    }
+}
+
+/// What a scene must know for its lines to be drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Needs {
+    finds_bends: bool,
+    crosses: bool,
+}
+
+impl Needs {
+    pub(super) fn new(lines: Option<LineSelection>, finds_bends: bool) -> Self {
+        let crosses = lines.is_some_and(|lines| lines.contains(StrokeKind::Intersection));
+        Self { finds_bends, crosses }
+    }
+
+    pub(super) fn scene(self, mesh: Mesh) -> Scene {
+        let scene = Scene::new(mesh);
+        let scene = if self.finds_bends { scene.with_bends().with_flush_edges() } else { scene };
+        if self.crosses { scene.with_intersections() } else { scene }
     }
 }

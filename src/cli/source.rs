@@ -27,7 +27,7 @@ pub(super) fn source(arguments: impl Iterator<Item = OsString>) -> String {
 }
 
 /// The argument as a shell takes it.
-fn quoted(argument: &str) -> String {
+pub(super) fn quoted(argument: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
     if !argument.is_empty() && argument.chars().all(plain) {
         argument.to_owned()

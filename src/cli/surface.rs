@@ -3,6 +3,8 @@
 mod args;
 mod input;
 mod input_args;
+#[cfg(feature = "view")]
+mod live;
 
 use std::error::Error;
 
@@ -13,6 +15,7 @@ use hiddenline::stages::draw::surface::{
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
 use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_underside_pen};
 use hiddenline::stages::strokes::HiddenLines;
+use hiddenline::stages::surface::Surface;
 use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::Format;
 
@@ -20,6 +23,8 @@ pub(super) use self::args::SurfaceArgs;
 pub(super) use self::input::SurfaceInput;
 use self::input::with_samples;
 pub(super) use self::input_args::SurfaceInputArgs;
+#[cfg(feature = "view")]
+pub(super) use self::live::LiveSurface;
 use super::camera::{ViewSource, with_remedy};
 use super::output::OutputOptions;
 use super::paper::{PlacedPage, Run, page_error};
@@ -46,11 +51,16 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.progress.stage("reading");
     let warnings = &mut run.notes.warnings;
     let surface = timed(&mut run.stats.seconds.read, || job.sheets.read(warnings))?;
+    draw(job, &surface, run)
+}
+
+/// Draws the surface and ends the run.
+fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>> {
+    let warnings = &mut run.notes.warnings;
     let view = job.view.framing()?;
     run.progress.stage("drawing");
-    let drawing = draw_surface(&surface, &view, &job.lines, &job.page);
+    let drawing = draw_surface(surface, &view, &job.lines, &job.page);
     let drawing = drawing.map_err(|error| failed(job, &error))?;
-    drop(surface);
     warnings.extend(drawing.notes.iter().map(noted));
     let is_json = job.output.format == Format::Json;
     if let Some(every) = drawing.crowded(job.pen_width_mm).filter(|_| !is_json) {

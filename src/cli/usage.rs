@@ -10,7 +10,10 @@ const SIZES: [&str; 5] = ["--width", "--height", "--size", "--resolution", "--pi
 
 /// The command line, with what applies to every option.
 pub(super) fn command() -> Command {
-    Cli::command().mut_subcommands(|command| {
+    let program = Cli::command();
+    #[cfg(feature = "view")]
+    let program = super::view::with_options_of_drawings(program);
+    program.mut_subcommands(|command| {
         command.mut_args(|arg| {
             // So that the parser of the value says what it expects, not clap that -5 is not an option.
             let is_option = arg.get_long().is_some() && arg.get_action().takes_values();

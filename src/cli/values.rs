@@ -1,7 +1,10 @@
 //! Parsers of single values, with messages that say what is expected.
 
+use std::ffi::OsStr;
 use std::time::Duration;
 
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command};
 use glam::DVec3;
 use hiddenline::stages::classify::LineSelection;
 use hiddenline::stages::optimize::Effort;
@@ -105,8 +108,30 @@ const KINDS_OF_LINE: [&str; 10] = [
     "all",
 ];
 
+/// Takes what [`lines`] takes, and lists the names for completions and for the viewer.
+#[derive(Clone)]
+pub(super) struct KindsOfLine;
+
+impl TypedValueParser for KindsOfLine {
+    type Value = LineSelection;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<LineSelection, clap::Error> {
+        let parse: fn(&str) -> Result<LineSelection, String> = lines;
+        parse.parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(KINDS_OF_LINE.into_iter().map(PossibleValue::new)))
+    }
+}
+
 /// Kinds of line with commas between them.
-pub(super) fn lines(text: &str) -> Result<LineSelection, String> {
+fn lines(text: &str) -> Result<LineSelection, String> {
     text.split(',').try_fold(LineSelection::NONE, |lines, name| {
         Ok(match name.trim() {
             "all" => lines.union(LineSelection::all_edges()),

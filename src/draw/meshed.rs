@@ -89,7 +89,11 @@ pub fn draw(
 }
 
 /// The surface with its own lines and those of the view that the options ask for.
-fn view<'a>(surface: &'a LinedScene, camera: &Camera, options: &MeshedOptions) -> ViewedScene<'a> {
+pub(super) fn view<'a>(
+    surface: &'a LinedScene,
+    camera: &Camera,
+    options: &MeshedOptions,
+) -> ViewedScene<'a> {
     let LinedScene { scene, lines } = surface;
     let mut edges = lines.clone();
     let mut selection = LineSelection::NONE;

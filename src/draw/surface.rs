@@ -19,6 +19,7 @@ pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLin
 
 use self::grid::{draw_grid, grid_to_draw};
 use self::smoothness::{SmoothSurface, sample};
+use super::draft::{Draft, draft_surface};
 use super::{DrawOutput, MeshSize, meshed};
 use crate::axes::{axes, missing};
 use crate::camera::framing::View;
@@ -26,6 +27,7 @@ use crate::camera::{Camera, Projection};
 use crate::engines::edge::LineEngine;
 use crate::engines::surface::max_min;
 use crate::extent::Extent;
+use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions};
 use crate::strokes::Strokes;
 use crate::surface::{LatticeLines, LinedScene, SampledSurface, Surface};
@@ -244,6 +246,52 @@ fn lined(
     let LinedScene { scene, lines: drawn } = mesh.into_scene()?;
     let scene = if lines.intersections { scene.with_intersections() } else { scene };
     Ok(LinedScene { scene, lines: drawn })
+}
+
+/// The lines of a surface as it is sampled, ready to be drafted from any number of views, and its
+/// lowest and highest corner.
+///
+/// # Errors
+/// See [`SurfaceError`].
+pub fn for_drafts(surface: &Surface, lines: &SurfaceLines) -> Result<DraftSurface, SurfaceError> {
+    let sampled = surface.sample(1)?;
+    let lined = lined(&sampled, lines, lines.every)?;
+    Ok(DraftSurface { lined, bounds: sampled.bounds(), z_factor: sampled.z_factor() })
+}
+
+/// A surface made ready to be drafted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DraftSurface {
+    lined: LinedScene,
+    bounds: (DVec3, DVec3),
+    z_factor: f64,
+}
+
+impl DraftSurface {
+    /// The triangles.
+    pub fn scene(&self) -> &Scene {
+        &self.lined.scene
+    }
+
+    /// The visible lines of a view, with the axes; the camera; and what they take up of the image.
+    ///
+    /// # Errors
+    /// The view makes no camera.
+    pub fn draft(
+        &self,
+        view: &View,
+        lines: &SurfaceLines,
+    ) -> Result<(Draft, Camera, Extent), SurfaceError> {
+        let camera = view.camera(self.bounds)?;
+        let mut draft = draft_surface(&self.lined, &camera, &meshed_options(lines));
+        let mut extent = self.lined.scene.extent(&camera);
+        if let Some(titles) = &lines.axes {
+            let around = axes(&extent, self.bounds, self.z_factor, &camera, titles);
+            draft.push_pane(&around, &camera);
+            extent = extent.union(around.extent(&camera));
+        }
+        Ok((draft, camera, extent))
+    }
 }
 
 /// The heights of level curves as they are drawn.

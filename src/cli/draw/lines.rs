@@ -28,7 +28,8 @@ pub(super) struct LineArgs {
     ///                 beside them; with other kinds it has its own pen, twice as wide
     ///
     /// An edge to which several kinds apply is drawn when any of them is named.
-    #[arg(long, value_name = "KINDS", value_parser = values::lines, verbatim_doc_comment)]
+    #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, verbatim_doc_comment)]
+    #[arg(hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     lines: LineSelection,
     /// Faces that meet at more than this angle make a crease

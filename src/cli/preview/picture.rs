@@ -49,7 +49,8 @@ pub(super) struct PictureArgs {
     #[arg(long)]
     pub(super) edges: bool,
     /// Kinds of line for --edges, as for `draw`
-    #[arg(long, value_name = "KINDS", value_parser = values::lines, requires = "edges")]
+    #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, requires = "edges")]
+    #[arg(hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     pub(super) lines: LineSelection,
     /// Width of these lines in pixels

@@ -13,6 +13,7 @@ mod plotting;
 mod preview;
 mod settings;
 mod surface;
+mod view;
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::{CUBE, assert_fails, command, hiddenline, text};
 
-const COMMANDS: [&str; 5] = ["draw", "surface", "fill", "preview", "optimize"];
+const COMMANDS: [&str; 6] = ["draw", "surface", "fill", "preview", "view", "optimize"];
 
 /// The names of a command's options, from its help.
 fn options(command: &str) -> BTreeSet<String> {

@@ -1,0 +1,78 @@
+//! Drawings of a surface that is read once and drawn many times, for the viewer.
+
+use std::error::Error;
+
+use hiddenline::stages::draw::surface::{DraftSurface, for_drafts};
+use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::page::Page;
+use hiddenline::stages::surface::Surface;
+use hiddenline::stages::timing::timed;
+
+use super::{Job, draw, failed, plot_options};
+use crate::cli::draw::Turned;
+use crate::cli::output::OutputOptions;
+use crate::cli::paper::Run;
+
+/// A surface with what reading it had to tell.
+pub(in crate::cli) struct LiveSurface {
+    surface: Surface,
+    warnings: Vec<String>,
+    /// For drafts, once one was asked for, with the lines that it is for.
+    drafts: Option<(String, DraftSurface)>,
+}
+
+impl Job {
+    /// The surface: `known` if it is given, or else read.
+    pub(in crate::cli) fn live(
+        &self,
+        known: Option<LiveSurface>,
+        run: &mut Run,
+    ) -> Result<LiveSurface, Box<dyn Error>> {
+        if let Some(live) = known {
+            return Ok(live);
+        }
+        run.progress.stage("reading");
+        let mut warnings = Vec::new();
+        let surface = timed(&mut run.stats.seconds.read, || self.sheets.read(&mut warnings))?;
+        Ok(LiveSurface { surface, warnings, drafts: None })
+    }
+
+    /// Draws a surface and ends the run.
+    pub(in crate::cli) fn draw_live(
+        &self,
+        live: &LiveSurface,
+        mut run: Run,
+    ) -> Result<(), Box<dyn Error>> {
+        run.unit_mm = self.unit_mm;
+        run.dxf_scale = self.dxf_scale;
+        run.notes.warnings.extend(live.warnings.iter().cloned());
+        draw(self, &live.surface, run)
+    }
+
+    /// The output's options.
+    pub(in crate::cli) fn output(&self) -> &OutputOptions {
+        &self.output
+    }
+
+    /// The visible lines of a surface as they are found quickly, as it is sampled.
+    pub(in crate::cli) fn turned(&self, live: &mut LiveSurface) -> Result<Turned, Box<dyn Error>> {
+        let key = format!("{:?}", self.lines);
+        if live.drafts.as_ref().is_none_or(|(known, _)| *known != key) {
+            let drafts = for_drafts(&live.surface, &self.lines);
+            live.drafts = Some((key, drafts.map_err(|error| failed(self, &error))?));
+        }
+        let Some((_, drafts)) = &live.drafts else { return Err("no surface".into()) };
+        let view = self.view.framing()?;
+        let drawn = drafts.draft(&view, &self.lines);
+        let (draft, camera, extent) = drawn.map_err(|error| failed(self, &error))?;
+        let sheet = Page::place(&extent, &camera, &self.page)?;
+        Ok(Turned { draft, camera, page: self.page, sheet, plot: plot_options(self) })
+    }
+}
+
+impl LiveSurface {
+    /// The triangles, once a draft was made.
+    pub(in crate::cli) fn scene(&self) -> Option<&Scene> {
+        self.drafts.as_ref().map(|(_, drafts)| drafts.scene())
+    }
+}
