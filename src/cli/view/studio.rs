@@ -134,7 +134,7 @@ impl Studio {
 
     /// The arguments that say what is shown.
     fn shown_by(&self) -> Vec<&'static str> {
-        let named = ["grid", "points", "parametric"].into_iter();
+        let mut named = ["grid", "points", "parametric"].into_iter();
         let named = named.find(|name| self.typed.options.contains_key(*name));
         vec![if self.typed.name == DRAW { "models" } else { named.unwrap_or("expression") }]
     }
