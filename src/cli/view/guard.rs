@@ -73,10 +73,9 @@ pub(super) fn check(
             return Err(refusal(StatusCode::FORBIDDEN, "the request comes from another origin"));
         }
     }
-    if let Some(site) = only(headers, &HeaderName::from_static("sec-fetch-site"))? {
-        if !matches!(site.as_bytes(), b"same-origin" | b"none") {
-            return Err(refusal(StatusCode::FORBIDDEN, "the request comes from another site"));
-        }
+    let site = only(headers, &HeaderName::from_static("sec-fetch-site"))?;
+    if site.is_some_and(|site| !matches!(site.as_bytes(), b"same-origin" | b"none")) {
+        return Err(refusal(StatusCode::FORBIDDEN, "the request comes from another site"));
     }
     if uri.path().starts_with("/api/") {
         let given = only(headers, &TOKEN_HEADER)?;

@@ -53,8 +53,8 @@ pub(super) struct Studio {
 
 enum Subject {
     None,
-    Scene(Live),
-    Surface(LiveSurface),
+    Scene(Box<Live>),
+    Surface(Box<LiveSurface>),
 }
 
 /// A command ready to be done.
@@ -355,14 +355,14 @@ impl Studio {
         let known = if std::mem::take(&mut self.key) == key { known } else { Subject::None };
         let mut run = Run::in_memory(job.output(), Progress::heard_by(listener), kept);
         let subject = match (job, known) {
-            (Job::Draw(job), Subject::Scene(live)) => {
-                Subject::Scene(job.live(Some(live), &mut run)?)
+            (Job::Draw(job), known) => {
+                let known = if let Subject::Scene(live) = known { Some(*live) } else { None };
+                Subject::Scene(Box::new(job.live(known, &mut run)?))
             }
-            (Job::Draw(job), _) => Subject::Scene(job.live(None, &mut run)?),
-            (Job::Surface(job), Subject::Surface(live)) => {
-                Subject::Surface(job.live(Some(live), &mut run)?)
+            (Job::Surface(job), known) => {
+                let known = if let Subject::Surface(live) = known { Some(*live) } else { None };
+                Subject::Surface(Box::new(job.live(known, &mut run)?))
             }
-            (Job::Surface(job), _) => Subject::Surface(job.live(None, &mut run)?),
         };
         let seconds = run.stats.seconds;
         drop(run);
