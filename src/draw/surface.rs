@@ -260,7 +260,7 @@ pub fn for_drafts(surface: &Surface, lines: &SurfaceLines) -> Result<DraftSurfac
 }
 
 /// A surface made ready to be drafted.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct DraftSurface {
     lined: LinedScene,
     bounds: (DVec3, DVec3),

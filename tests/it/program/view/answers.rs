@@ -197,7 +197,7 @@ fn an_option_with_a_wrong_value_is_named() {
     let viewer = Viewer::start(&["cube.obj"]);
     for (options, option, error) in [
         (json!({ "crease": "x" }), "crease", "not a number"),
-        (json!({ "page": "a99" }), "page", "no paper"),
+        (json!({ "page": "a99" }), "page", "not a paper size"),
         (json!({ "hidden": "dotted" }), "hidden", "dotted"),
     ] {
         let reply = viewer.draw(&exact(options));
