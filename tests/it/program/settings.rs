@@ -17,7 +17,7 @@ fn options(command: &str) -> BTreeSet<String> {
         let line = line.trim_start();
         let line =
             line.split_once(", ").filter(|(short, _)| short.len() == 2).map_or(line, |p| p.1);
-        line.strip_prefix("--")?.split([' ', '=', '[', '.']).next()
+        line.strip_prefix("--")?.split([' ', '=', '[', ']', '.']).next()
     });
     words.map(str::to_owned).collect()
 }
