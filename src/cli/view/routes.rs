@@ -334,16 +334,3 @@ fn decoded(value: &str) -> String {
     }
     String::from_utf8_lossy(&bytes).into_owned()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{ascii, decoded};
-
-    #[test]
-    fn names_and_facts_survive_their_headers() {
-        assert_eq!(decoded("t%C3%BCr%20%2.stl%"), "tür %2.stl%");
-        assert_eq!(ascii("\"π 𝄞\""), "\"\\u03c0 \\ud834\\udd1e\"");
-        let back: String = serde_json::from_str(&ascii("\"π 𝄞\"")).expect("JSON");
-        assert_eq!(back, "π 𝄞");
-    }
-}

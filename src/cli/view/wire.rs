@@ -90,31 +90,3 @@ impl Octets {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::dvec2;
-    use hiddenline::stages::plot::{Layer, Polylines};
-
-    #[test]
-    fn a_plot_is_laid_out_as_documented() {
-        let mut lines = Polylines::default();
-        lines.push([dvec2(1.0, 2.0), dvec2(3.0, 4.0), dvec2(5.0, 6.0)]);
-        lines.push([dvec2(7.0, 8.0), dvec2(9.0, 0.5)]);
-        let layer = Layer { number: 1, lines, ..Layer::default() };
-        let both = Plot { layers: vec![layer.clone(), layer], ..Plot::default() };
-        let bytes = plot(&both, 7);
-        let words: Vec<u32> = bytes
-            .chunks_exact(4)
-            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
-            .collect();
-        assert_eq!(&bytes[..4], b"HLV1");
-        assert_eq!(words[1..6], [7, EXACT, 2, 4, 10]);
-        assert_eq!(words[6..14], [0, 0, 0, 0, 1, 0, 0, 2]);
-        assert_eq!(words[14..19], [0, 3, 5, 8, 10]);
-        let points: Vec<f32> = words[19..].iter().map(|&word| f32::from_bits(word)).collect();
-        let one = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 0.5];
-        assert_eq!(points, [one, one].concat());
-    }
-}

@@ -57,6 +57,25 @@ fn the_page_shows_the_strokes_that_are_saved() {
         let shown: Vec<Vec<f64>> =
             reply.strokes::<2>().into_iter().map(|stroke| stroke.concat()).collect();
         assert_eq!(saved.len(), shown.len(), "{command}");
+        // Each group is a layer, in its pen.
+        let layers = document.descendants().filter(|node| node.tag_name().name() == "g");
+        let in_layer = |layer: roxmltree::Node| {
+            layer.descendants().filter(|node| node.tag_name().name() == "path").count()
+        };
+        let counts: Vec<usize> = layers.clone().map(in_layer).collect();
+        let firsts: Vec<usize> =
+            (0..counts.len()).map(|layer| counts[..layer].iter().sum()).collect();
+        let words = reply.words();
+        assert_eq!(words[3] as usize, counts.len());
+        let groups = words[6..6 + 4 * counts.len()].chunks(4);
+        let found: Vec<usize> = groups.clone().map(|group| group[3] as usize).collect();
+        assert_eq!(found, firsts, "{command}");
+        for (group, layer) in groups.zip(layers) {
+            let pen = &facts["pens"][group[0] as usize];
+            assert_eq!(pen["color"].as_str(), layer.attribute("stroke"), "{pen}");
+            let width = pen["width"].as_f64().unwrap().to_string();
+            assert_eq!(Some(width.as_str()), layer.attribute("stroke-width"), "{pen}");
+        }
         for (saved, shown) in saved.iter().zip(&shown) {
             // Closed strokes may repeat their first point or not.
             for (a, b) in saved.iter().zip(shown) {
@@ -190,6 +209,29 @@ fn the_page_is_told_every_option_of_draw_but_those_of_files() {
     assert_eq!(of("crease")["default"], json!("30"));
     assert_eq!(of("view")["kind"], json!("choice"));
     assert_eq!(of("pen")["kind"], json!("texts"));
+}
+
+#[test]
+fn what_the_page_asks_for_is_in_the_command_and_on_the_paper() {
+    let viewer = Viewer::start(&["cube.obj", "--margin", "15", "--landscape"]);
+    let asked = json!({ "margin": "20", "pen": ["visible=3:0.7mm:red"], "hidden": "solid", "crease": "30" });
+    let facts = viewer.draw(&exact(asked)).facts();
+    // What holds anyway is left out, and so is what the page has turned off.
+    let expected =
+        "hiddenline draw cube.obj --hidden=solid --margin=20 --pen=visible=3:0.7mm:red -o cube.svg";
+    assert_eq!(facts["command"], json!(expected));
+    assert_eq!(facts["page"]["margin"], json!(20.0));
+    assert_eq!(facts["pens"][0]["number"], json!(1), "{}", facts["pens"]);
+    let pens = facts["pens"].as_array().unwrap();
+    let visible = pens.iter().find(|pen| pen["name"] == "visible").unwrap();
+    assert_eq!(
+        *visible,
+        json!({ "number": 3, "name": "visible", "width": 0.7, "color": "#ff0000" })
+    );
+    // Without options of its own, a page is shown what was typed.
+    let typed = viewer.draw(&json!({ "page": "p", "want": "exact" })).facts();
+    assert_eq!(typed["page"]["margin"], json!(15.0));
+    assert!(typed["command"].as_str().unwrap().contains("--landscape"));
 }
 
 #[test]

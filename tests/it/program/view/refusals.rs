@@ -21,8 +21,17 @@ fn only_requests_that_name_this_machine_as_host_are_answered() {
         "127.0.0.1.attacker.example:80",
         "localhost.attacker.example",
         "attacker.example",
+        "attacker.example:80",
         "0.0.0.0",
         "127.0.0.2",
+        "127.1",
+        "localhost.",
+        "::1",
+        "[::1",
+        "127.0.0.1:",
+        "127.0.0.1:80a",
+        "a@127.0.0.1",
+        ":80",
         "",
     ] {
         assert_eq!(get(foreign), 403, "{foreign:?}");
