@@ -124,6 +124,8 @@ pub struct ViewSegments {
     constructed: Vec<PiercePoint>,
     ends: Vec<[u32; 2]>,
     kinds: Vec<StrokeKind>,
+    /// The first of the triangles that contain each segment, and the one after the last.
+    within: Vec<[u32; 2]>,
 }
 
 impl ViewSegments {
@@ -134,7 +136,39 @@ impl ViewSegments {
             constructed: scene.intersections().points().to_vec(),
             ends: Vec::new(),
             kinds: Vec::new(),
+            within: Vec::new(),
         }
+    }
+
+    /// Adds points, which get the numbers that follow those there are. O(points), in parallel.
+    pub fn extend_points(&mut self, points: Vec<PiercePoint>) {
+        self.points.par_extend(points.par_iter().map(PiercePoint::rounded));
+        self.constructed.extend(points);
+    }
+
+    /// Number of points, those of the scene among them.
+    pub fn n_points(&self) -> usize {
+        self.points.len()
+    }
+
+    /// The points: those of the scene, then those of the view, rounded.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// Number of segments.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are no segments.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The ends of a segment, as numbers of points. Panics when there is no such segment.
+    pub fn ends(&self, segment: usize) -> [u32; 2] {
+        self.ends[segment]
     }
 
     /// Adds a point and returns its number.
@@ -146,9 +180,16 @@ impl ViewSegments {
 
     /// Adds a segment between two points. Panics when there is no such point.
     pub fn push(&mut self, ends: [u32; 2], kind: StrokeKind) {
+        self.push_within(ends, kind, [0; 2]);
+    }
+
+    /// Adds a segment that lies in certain triangles of the scene, all of one face: from the first
+    /// number to the one before the last. These do not hide it. Panics when there is no such point.
+    pub fn push_within(&mut self, ends: [u32; 2], kind: StrokeKind, triangles: [u32; 2]) {
         assert!(ends.iter().all(|&end| (end as usize) < self.points.len()), "no such point");
         self.ends.push(ends);
         self.kinds.push(kind);
+        self.within.push(triangles);
     }
 }
 
@@ -289,6 +330,30 @@ impl<'a> ViewedScene<'a> {
             }
             _ => self.scene.line(line),
         }
+    }
+
+    /// Whether a line is known to lie in a triangle's plane: a line of intersection of faces in that
+    /// plane, or a segment of the view in the triangle. No sign need be asked then.
+    #[inline]
+    pub fn is_known_in_plane_of(&self, line: u32, triangle: u32) -> bool {
+        if let Some(own) = self.own
+            && let Some(segment) = (line as usize).checked_sub(self.scene.n_lines())
+        {
+            let [first, end] = own.within[segment];
+            return (first..end).contains(&triangle);
+        }
+        match self.scene.source(line) {
+            Some(LineSource::Intersection(k)) => {
+                let crossings = self.scene.intersections();
+                crossings.is_in_plane_of(&crossings.lines()[k as usize], triangle)
+            }
+            _ => false,
+        }
+    }
+
+    /// Keeps of the lines to draw only those with certain numbers.
+    pub fn keep(&mut self, is_kept: impl Fn(u32) -> bool) {
+        self.drawn.retain(|drawn| is_kept(drawn.edge));
     }
 
     /// The camera.

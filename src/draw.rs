@@ -130,19 +130,23 @@ impl DrawOptions {
         Self { exact: true, ..self }
     }
 
-    fn visibility(&self, scene: &Scene) -> VisibilityOptions {
+    /// The contact tolerance in a scene, in model units.
+    pub(crate) fn contact_tolerance_in(&self, scene: &Scene) -> f64 {
+        if self.exact {
+            return 0.0;
+        }
         let default = || {
             let (low, high) = scene.mesh().bounds().unwrap_or_default();
             let largest = low.abs().max(high.abs()).max_element();
             let side = (high - low).max_element();
             (largest * DEFAULT_CONTACT_TOLERANCE).max(side * LEAST_CONTACT_TOLERANCE)
         };
+        self.contact_tolerance.unwrap_or_else(default)
+    }
+
+    fn visibility(&self, scene: &Scene) -> VisibilityOptions {
         VisibilityOptions {
-            contact_tolerance: if self.exact {
-                0.0
-            } else {
-                self.contact_tolerance.unwrap_or_else(default)
-            },
+            contact_tolerance: self.contact_tolerance_in(scene),
             count_layers: self.hidden != HiddenLines::None,
             find_doubled: !self.exact,
         }

@@ -148,6 +148,8 @@ pub mod stages {
 
     pub mod shading;
 
+    pub mod hatch;
+
     pub mod optimize;
 
     #[cfg(feature = "svg-in")]
@@ -159,7 +161,7 @@ pub mod stages {
 }
 
 use stages::{
-    api, axes, camera, chain, classify, draw, engines, extent, model, optimize, page, plot,
+    api, axes, camera, chain, classify, draw, engines, extent, hatch, model, optimize, page, plot,
     predicates, read, shading, strokes, surface, timing, write,
 };
 
@@ -188,7 +190,11 @@ pub use classify::LineSelection;
 pub use draw::DrawOptions;
 pub use engines::edge::LineEngine;
 pub use engines::face::FaceEngine;
+pub use hatch::{
+    Ground, HatchError, HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows,
+};
 pub use shading::fill::{FillOptions, Palette};
+pub use shading::light::LightSource;
 pub use strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
 
 // The paper.

@@ -30,7 +30,8 @@ use crate::strokes::{HiddenLines, Strokes};
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
 pub use self::pens::{
-    LayerControls, PenRole, PenRule, default_pen_color, with_line_pens, with_underside_pen,
+    LayerControls, PenRole, PenRule, default_pen_color, with_hatch_pen, with_line_pens,
+    with_underside_pen,
 };
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 
@@ -292,6 +293,14 @@ impl Page {
     /// Millimeters on paper for one unit of the image.
     pub fn mm_per_image_unit(&self) -> f64 {
         self.page_from_image.matrix2.x_axis.x
+    }
+
+    /// What lies between the margins, as the lowest and the highest corner in image coordinates.
+    pub fn window_in_image(&self) -> (DVec2, DVec2) {
+        let image_from_page = self.page_from_image.inverse();
+        let Window { low, high, .. } = self.window();
+        let corners = [low, high].map(|corner| image_from_page.transform_point2(corner));
+        (corners[0].min(corners[1]), corners[0].max(corners[1]))
     }
 
     /// What lies between the margins.

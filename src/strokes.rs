@@ -34,11 +34,13 @@ pub enum StrokeKind {
     Text,
     /// Shading.
     Hatch,
+    /// The outline of a shadow.
+    Shadow,
 }
 
 impl StrokeKind {
     /// All kinds.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Silhouette,
         Self::Crease,
         Self::Boundary,
@@ -52,6 +54,7 @@ impl StrokeKind {
         Self::Axis,
         Self::Text,
         Self::Hatch,
+        Self::Shadow,
     ];
 
     /// The name used on the command line and in files.
@@ -70,6 +73,7 @@ impl StrokeKind {
             Self::Axis => "axis",
             Self::Text => "text",
             Self::Hatch => "hatch",
+            Self::Shadow => "shadow",
         }
     }
 }
@@ -112,6 +116,8 @@ pub struct Stroke<'a> {
     pub outline: bool,
     /// Whether it is a line of a surface seen from below. Known only where undersides were requested.
     pub underside: bool,
+    /// Whether the light reaches it. Known only for exact hatching.
+    pub lit: Option<bool>,
     /// Two points or more in image coordinates; a closed stroke ends at its first point.
     pub points: &'a [DVec2],
 }
@@ -130,18 +136,29 @@ struct Head {
     qi: u32,
     outline: bool,
     underside: bool,
+    lit: Option<bool>,
     end: u32,
 }
 
 impl Strokes {
     /// Appends a stroke. One of fewer than two points is left out.
     pub fn push(&mut self, kind: StrokeKind, qi: u32, points: impl IntoIterator<Item = DVec2>) {
-        self.push_with(kind, qi, false, points);
+        self.push_with(kind, qi, false, None, points);
+    }
+
+    /// Appends a visible stroke that the light reaches or not. One of fewer than two points is left out.
+    pub fn push_lit(
+        &mut self,
+        kind: StrokeKind,
+        is_lit: bool,
+        points: impl IntoIterator<Item = DVec2>,
+    ) {
+        self.push_with(kind, 0, false, Some(is_lit), points);
     }
 
     /// Appends a visible stroke of the outline. One of fewer than two points is left out.
     pub fn push_outline(&mut self, kind: StrokeKind, points: impl IntoIterator<Item = DVec2>) {
-        self.push_with(kind, 0, true, points);
+        self.push_with(kind, 0, true, None, points);
     }
 
     fn push_with(
@@ -149,6 +166,7 @@ impl Strokes {
         kind: StrokeKind,
         qi: u32,
         outline: bool,
+        lit: Option<bool>,
         points: impl IntoIterator<Item = DVec2>,
     ) {
         let start = self.points.len();
@@ -157,7 +175,7 @@ impl Strokes {
             self.points.truncate(start);
         } else {
             let end = self.points.len() as u32;
-            self.heads.push(Head { kind, qi, outline, underside: false, end });
+            self.heads.push(Head { kind, qi, outline, underside: false, lit, end });
         }
     }
 
@@ -196,8 +214,8 @@ impl Strokes {
         self.heads.iter().scan(0, |start, head| {
             let points = &self.points[*start..head.end as usize];
             *start = head.end as usize;
-            let Head { kind, qi, outline, underside, .. } = *head;
-            Some(Stroke { kind, qi, outline, underside, points })
+            let Head { kind, qi, outline, underside, lit, .. } = *head;
+            Some(Stroke { kind, qi, outline, underside, lit, points })
         })
     }
 

@@ -6,10 +6,11 @@ use super::{Error, Sheet};
 use crate::camera::Camera;
 use crate::camera::framing::View;
 use crate::draw::{DrawOptions, draw};
+use crate::hatch::{HatchOptions, HatchPage, hatch, shadow_outlines};
 use crate::model::scene::Scene;
-use crate::page::{Dash, Page, PageOptions, PenRule, PlotOptions};
+use crate::page::{Dash, Page, PageOptions, PenRole, PenRule, PlotOptions, with_hatch_pen};
 use crate::shading::fill::{DEFAULT_SEAM_MM, FillOptions, fill};
-use crate::strokes::Strokes;
+use crate::strokes::{StrokeKind, Strokes};
 
 /// What to draw: a scene, a view of it, and which lines.
 ///
@@ -24,6 +25,7 @@ pub struct Drawing<'a> {
     lines: DrawOptions,
     plot: PlotOptions,
     fill: Option<FillOptions>,
+    hatch: Option<HatchOptions>,
 }
 
 impl Scene {
@@ -47,6 +49,7 @@ impl Scene {
             lines: *lines,
             plot: PlotOptions::default(),
             fill: None,
+            hatch: None,
         }
     }
 
@@ -97,6 +100,24 @@ impl Drawing<'_> {
         self
     }
 
+    /// Hatches the faces by the light, with exact shadows, on a layer of its own.
+    ///
+    /// Outlines of shadows are lines of the kind [`StrokeKind::Shadow`]; they take light and ground from
+    /// here, too.
+    ///
+    /// ```no_run
+    /// use hiddenline::{DrawOptions, Ground, HatchOptions, Paper, Scene, View};
+    ///
+    /// let scene = Scene::open("examples/models/spot.obj")?;
+    /// let drawing = scene.draw(&View::isometric(), &DrawOptions::default());
+    /// drawing.hatched(HatchOptions::default().ground(Ground::Lowest)).on(Paper::A4)?;
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn hatched(mut self, options: HatchOptions) -> Self {
+        self.hatch = Some(options);
+        self
+    }
+
     /// Puts the drawing on a sheet of paper, by default as large as a margin of 10 mm allows.
     ///
     /// # Errors
@@ -104,8 +125,11 @@ impl Drawing<'_> {
     /// filled as asked.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
         let (camera, page) = self.place(page.into())?;
-        let strokes = draw(self.scene, &camera, &self.lines, page.mm_per_image_unit()).drawing;
-        let plot = PlotOptions { hidden: self.lines.hidden, ..self.plot.clone() };
+        let strokes = self.strokes_on(&camera, &page, &self.lines)?;
+        let mut plot = PlotOptions { hidden: self.lines.hidden, ..self.plot.clone() };
+        if self.hatch.is_some() {
+            plot.pens = with_hatch_pen(plot.pens, plot.pen_width_mm);
+        }
         let placed = page.plot(&strokes, plot);
         let Some(options) = &self.fill else { return Ok(Sheet::new(placed)) };
         let filled = fill(self.scene, &camera, options)?;
@@ -132,7 +156,33 @@ impl Drawing<'_> {
     pub fn strokes(&self, page: impl Into<PageOptions>) -> Result<(Strokes, Page), Error> {
         let (camera, page) = self.place(page.into())?;
         let lines = DrawOptions { apart_by_kind: true, ..self.lines };
-        Ok((draw(self.scene, &camera, &lines, page.mm_per_image_unit()).drawing, page))
+        Ok((self.strokes_on(&camera, &page, &lines)?, page))
+    }
+
+    fn strokes_on(
+        &self,
+        camera: &Camera,
+        page: &Page,
+        lines: &DrawOptions,
+    ) -> Result<Strokes, Error> {
+        let mm_per_unit = page.mm_per_image_unit();
+        let mut strokes = draw(self.scene, camera, lines, mm_per_unit).drawing;
+        if lines.lines.contains(StrokeKind::Shadow) {
+            let (light, ground) = match &self.hatch {
+                Some(hatch) => (hatch.light, hatch.ground),
+                None => Default::default(),
+            };
+            let outlines = shadow_outlines(self.scene, camera, light, ground, lines, mm_per_unit)?;
+            strokes.append(&outlines);
+        }
+        if let Some(options) = &self.hatch {
+            let hatch_pen = PenRole::Kind(StrokeKind::Hatch);
+            let rule = self.plot.pens.iter().rev().find(|rule| rule.drawn == hatch_pen);
+            let width_mm = rule.map_or(self.plot.pen_width_mm, |rule| rule.pen.width_mm);
+            let page = HatchPage::new(page, width_mm);
+            strokes.append(&hatch(self.scene, camera, options, lines, &page)?);
+        }
+        Ok(strokes)
     }
 
     fn place(&self, options: PageOptions) -> Result<(Camera, Page), Error> {

@@ -7,6 +7,7 @@ use thiserror::Error as ThisError;
 
 use crate::camera::framing::ViewError;
 use crate::draw::surface::SurfaceError;
+use crate::hatch::HatchError;
 use crate::model::mesh::MeshError;
 use crate::page::PageError;
 use crate::read::ReadError;
@@ -57,6 +58,9 @@ pub enum Error {
     /// The faces cannot be filled as asked.
     #[error(transparent)]
     Fill(#[from] FillError),
+    /// The faces cannot be hatched as asked.
+    #[error(transparent)]
+    Hatch(#[from] HatchError),
     /// The name of the output file does not say a format that can be written.
     #[error("{}: the extension names no format; use one of {}", .0.display(), crate::write::known_extensions())]
     UnknownFormat(PathBuf),

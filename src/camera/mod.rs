@@ -166,6 +166,14 @@ impl Camera {
         }
     }
 
+    /// Whether it sees the upper side of a horizontal plane at `z`.
+    pub fn is_above(&self, z: f64) -> bool {
+        match self.projection {
+            Projection::Perspective { .. } => self.eye.z > z,
+            Projection::Orthographic => self.forward().z < 0.0,
+        }
+    }
+
     /// Image coordinates of a world point, y upwards. Behind the eye they mean nothing.
     pub fn image(&self, point: DVec3) -> DVec2 {
         let frame = self.frame();

@@ -10,10 +10,13 @@ use clap::Args;
 use glam::DVec2;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
+use hiddenline::stages::hatch::{Ground, HatchOptions, HatchPage, hatch, shadow_outlines};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
-use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_line_pens};
-use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_hatch_pen, with_line_pens};
+use hiddenline::stages::shading::light::LightSource;
+use hiddenline::stages::strokes::{StrokeKind, Strokes};
+use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::Format;
 use hiddenline::stages::write::dxf::DxfScale;
 
@@ -21,6 +24,7 @@ use self::lines::LineArgs;
 #[cfg(feature = "view")]
 pub(super) use self::live::{Live, Turned};
 use super::camera::{CameraArgs, ViewSource};
+use super::hatch::{HatchArgs, LightArgs, with_remedy};
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::{self, PageArgs};
@@ -38,6 +42,8 @@ Examples:
       A picture seen from a given point. Numbers may be negative.
   hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
       True to scale, for a model in millimeters.
+  hiddenline draw spot.obj --up-axis y --hatch --ground --light 1,-1,2 -o spot.svg
+      Hatched by the light, with its shadow on the ground.
   hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
       Two models, the second one lifted.
   cat part.stl | hiddenline draw - --input-format stl > part.svg
@@ -58,6 +64,10 @@ pub(super) struct DrawArgs {
     #[command(flatten)]
     lines: LineArgs,
     #[command(flatten)]
+    hatch: HatchArgs,
+    #[command(flatten)]
+    light: LightArgs,
+    #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
     output: OutputArgs,
@@ -68,6 +78,9 @@ pub(super) struct Job {
     files: ModelFiles,
     view: ViewSource,
     draw: DrawOptions,
+    hatch: Option<HatchOptions>,
+    light: LightSource,
+    ground: Option<Ground>,
     page: PageOptions,
     unit_mm: f64,
     dxf_scale: DxfScale,
@@ -79,12 +92,14 @@ pub(super) struct Job {
 impl DrawArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
-        let Self { model, camera, lines, page, output } = self;
+        let Self { model, camera, lines, hatch, light, page, output } = self;
         let files = model.files()?;
         let files = if lines.exact { files.with_equal_faces() } else { files };
         let files = files.in_unit(page.given_unit_mm());
         let mut output = output.options(lines.exact)?;
         output.warnings.extend(lines.without_effect(&output.plotting));
+        let has_outlines = lines.options().lines.contains(StrokeKind::Shadow);
+        output.warnings.extend(hatch.without_effect(has_outlines, &["--light", "--light-at"]));
         let view = camera.view_source();
         let inputs = files.inputs().chain(view.input()).chain(output.inputs.clone());
         check_place(output.path.as_deref(), inputs)?;
@@ -98,6 +113,9 @@ impl DrawArgs {
             pen_width_mm: page.pen_width_mm(),
             dash: lines.dash,
             draw: DrawOptions { apart_by_kind, ..lines.options() },
+            light: light.source(),
+            ground: hatch.ground(),
+            hatch: hatch.options(light.source()),
             output,
         })
     }
@@ -131,7 +149,24 @@ fn strokes(
     run.dxf_scale = page::dxf_in_unit(job.dxf_scale, &page, unit_mm);
     run.progress.stage("drawing");
     let sheet = PlacedPage::new(scene.extent(&camera), camera, &page)?;
-    let drawn = draw(scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
+    let mut drawn = draw(scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
+    if job.draw.lines.contains(StrokeKind::Shadow) {
+        run.progress.stage("finding shadows");
+        let mm_per_unit = sheet.page.mm_per_image_unit();
+        let outlines = timed(&mut drawn.seconds.visibility, || {
+            shadow_outlines(scene, &camera, job.light, job.ground, &job.draw, mm_per_unit)
+        });
+        drawn.drawing.append(&outlines.map_err(|error| with_remedy(&error))?);
+    }
+    if let Some(options) = &job.hatch {
+        run.progress.stage("hatching");
+        let page =
+            HatchPage::new(&sheet.page, job.output.plotting.hatch_width_mm(job.pen_width_mm));
+        let hatched = timed(&mut drawn.seconds.visibility, || {
+            hatch(scene, &camera, options, &job.draw, &page)
+        });
+        drawn.drawing.append(&hatched.map_err(|error| with_remedy(&error))?);
+    }
     run.stats.count(MeshSize::of(scene));
     run.stats.add(&drawn);
     if drawn.drawing.is_empty() {
@@ -163,21 +198,20 @@ fn why_empty(job: &Job, scene: &Scene, sheet: &PlacedPage, n_lines: usize) -> St
 }
 
 fn plot_options(job: &Job) -> PlotOptions {
+    let pens = with_line_pens(
+        job.output.plotting.pens(job.pen_width_mm),
+        job.draw.lines,
+        job.draw.hidden_levels,
+        job.pen_width_mm,
+    );
+    let pens = if job.hatch.is_some() { with_hatch_pen(pens, job.pen_width_mm) } else { pens };
     PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: job.draw.hidden,
         dash: job.dash,
         keep_dashes_whole: job.output.keeps_dashes_whole,
         title: job.files.title(),
-        pens: job.output.plotting.with_kinds_apart(
-            with_line_pens(
-                job.output.plotting.pens(job.pen_width_mm),
-                job.draw.lines,
-                job.draw.hidden_levels,
-                job.pen_width_mm,
-            ),
-            job.pen_width_mm,
-        ),
+        pens: job.output.plotting.with_kinds_apart(pens, job.pen_width_mm),
         source: source::source(config::arguments()),
     }
 }

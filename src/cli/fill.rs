@@ -11,9 +11,11 @@ use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::engines::face::{FaceEngine, FaceError, Prepared};
 use hiddenline::stages::extent::Extent;
+use hiddenline::stages::hatch::{HatchOptions, HatchPage, hatch};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
-use hiddenline::stages::page::{PageOptions, PlotOptions};
+use hiddenline::stages::page::{PageOptions, PlotOptions, with_hatch_pen};
+use hiddenline::stages::plot::Layer;
 use hiddenline::stages::read::material_colors;
 use hiddenline::stages::shading::fill::{FillError, FillOptions, Filled, fill_prepared};
 use hiddenline::stages::shading::white::paint_over;
@@ -24,6 +26,7 @@ use hiddenline::stages::write::NoFills;
 
 use self::areas::AreaArgs;
 use super::camera::{CameraArgs, ViewSource};
+use super::hatch::{self as hatching, HatchArgs};
 use super::input::{Input, InputArgs};
 use super::messages::counted;
 use super::output::{OutputArgs, OutputOptions, check_place};
@@ -80,6 +83,8 @@ pub(super) struct FillArgs {
     #[command(flatten)]
     edges: EdgeArgs,
     #[command(flatten)]
+    hatch: HatchArgs,
+    #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
     output: OutputArgs,
@@ -114,6 +119,8 @@ pub(super) struct Job {
     turntable: Option<u16>,
     /// `None` for areas only.
     edges: Option<DrawOptions>,
+    /// What is hatched on top.
+    hatch: Option<HatchOptions>,
     /// Whether hidden edges are painted over instead of left out.
     paints_over: bool,
     page: PageOptions,
@@ -124,9 +131,10 @@ pub(super) struct Job {
 impl FillArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn job(self) -> Result<Job, Refused> {
-        let Self { input, camera, areas, edges, page, output } = self;
+        let Self { input, camera, areas, edges, hatch, page, output } = self;
         let input = input.input(DEFAULT_SAMPLES)?.in_unit(page.given_unit_mm());
-        let output = output.options(false)?;
+        let mut output = output.options(false)?;
+        output.warnings.extend(hatch.without_effect(false, &[]));
         if !output.format.has_fills() {
             let error = NoFills(output.format);
             return Err(
@@ -151,6 +159,7 @@ impl FillArgs {
             return Err("--white draws whole edges; leave outline out of --lines".into());
         }
         let fill = areas.options();
+        let hatch = hatch.options(fill.light.into());
         if areas.white && !paints_over(fill.engine) {
             let name = fill.engine.name();
             return Err(format!(
@@ -168,6 +177,7 @@ impl FillArgs {
             seam_mm: areas.seam,
             turntable: areas.turntable,
             edges: (!edges.no_edges).then_some(lines),
+            hatch,
             paints_over: areas.white,
             page: output.within_reach(page.options()),
             pen_width_mm,
@@ -270,11 +280,26 @@ impl Picture<'_> {
             run.stats.add(&drawn);
             edges = drawn.drawing;
         }
+        if let Some(options) = &job.hatch {
+            run.progress.stage("hatching");
+            let width_mm = job.output.plotting.hatch_width_mm(job.pen_width_mm);
+            let paper = HatchPage::new(&page, width_mm);
+            let lines = job.edges.unwrap_or_default();
+            let hatched = timed(&mut run.stats.seconds.visibility, || {
+                hatch(scene, camera, options, &lines, &paper)
+            });
+            edges.append(&hatched.map_err(|error| hatching::with_remedy(&error))?);
+        }
         run.stats.counts.fill = filled.work;
         run.stats.engine = filled.engine.name().into();
+        let pens = job.output.plotting.pens(job.pen_width_mm);
+        let pens = match job.hatch {
+            Some(_) => with_hatch_pen(pens, job.pen_width_mm),
+            None => pens,
+        };
         let options = PlotOptions {
             pen_width_mm: job.pen_width_mm,
-            pens: job.output.plotting.pens(job.pen_width_mm),
+            pens,
             hidden: Default::default(),
             dash: Default::default(),
             keep_dashes_whole: false,
@@ -283,7 +308,8 @@ impl Picture<'_> {
         };
         let mut placed = page.plot(&edges, options).with_fills(&page, &filled.layers, job.seam_mm);
         if job.edges.is_none() || job.paints_over {
-            placed.plot.layers.retain(|layer| !layer.fills.is_empty());
+            let is_drawn = |layer: &Layer| !layer.fills.is_empty() || !layer.lines.is_empty();
+            placed.plot.layers.retain(is_drawn);
         }
         if placed.cropped {
             run.empty_because = "all of it lies beyond the margins".to_owned();

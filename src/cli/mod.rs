@@ -7,6 +7,7 @@ mod draw;
 mod file;
 mod fill;
 mod formulas;
+mod hatch;
 mod input;
 mod machine;
 mod messages;

@@ -150,6 +150,13 @@ impl Plotting {
         !self.pens.is_empty()
     }
 
+    /// The width of the pen that hatches; `width_mm` if it has none of its own.
+    pub(super) fn hatch_width_mm(&self, width_mm: f64) -> f64 {
+        let hatch = PenRole::Kind(StrokeKind::Hatch);
+        let rule = self.pens(width_mm).into_iter().rev().find(|rule| rule.drawn == hatch);
+        rule.map_or(width_mm, |rule| rule.pen.width_mm)
+    }
+
     /// Whether hidden lines have pens.
     pub(super) fn has_hidden_pens(&self) -> bool {
         self.pens.iter().any(|pen| pen.drawn.is_hidden())

@@ -10,6 +10,7 @@ use clap::Args;
 use hiddenline::stages::camera::Projection;
 use hiddenline::stages::classify::LineSelection;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
+use hiddenline::stages::shading::light::LightError;
 use hiddenline::stages::shading::preview::{self, PreviewError, PreviewOptions};
 use hiddenline::stages::write::Format;
 
@@ -162,6 +163,11 @@ fn with_remedy(error: &PreviewError) -> String {
     match error {
         PreviewError::NoOrder(_) => format!("{error}; take --engine z-buffer"),
         PreviewError::NoFieldOfView => format!("{error}; give --projection perspective"),
-        PreviewError::Size(..) | PreviewError::Write(_) => error.to_string(),
+        PreviewError::Light(LightError::Inside(..)) => {
+            format!("{error}; give --light-at a point outside, or --light a direction")
+        }
+        PreviewError::Size(..) | PreviewError::Light(_) | PreviewError::Write(_) => {
+            error.to_string()
+        }
     }
 }

@@ -8,12 +8,15 @@ mod live;
 
 use std::error::Error;
 
-use hiddenline::stages::draw::DEFAULT_SHORTEST_STROKE_MM;
 use hiddenline::stages::draw::surface::{
     NoLevels, SurfaceError, SurfaceLines, SurfaceNote, draw_surface,
 };
+use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions};
+use hiddenline::stages::hatch::{HatchOptions, HatchPage, hatch};
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
-use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_underside_pen};
+use hiddenline::stages::page::{
+    Dash, PageOptions, PlotOptions, with_hatch_pen, with_underside_pen,
+};
 use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::surface::Surface;
 use hiddenline::stages::timing::timed;
@@ -28,7 +31,7 @@ pub(super) use self::live::LiveSurface;
 use super::camera::{ViewSource, with_remedy};
 use super::output::OutputOptions;
 use super::paper::{PlacedPage, Run, page_error};
-use super::{config, source};
+use super::{config, hatch as hatching, source};
 use hiddenline::stages::write::dxf::DxfScale;
 
 /// What is to be done.
@@ -36,6 +39,7 @@ pub(super) struct Job {
     sheets: SurfaceInput,
     view: ViewSource,
     lines: SurfaceLines,
+    hatch: Option<HatchOptions>,
     page: PageOptions,
     unit_mm: f64,
     dxf_scale: DxfScale,
@@ -60,7 +64,23 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
     let view = job.view.framing()?;
     run.progress.stage("drawing");
     let drawing = draw_surface(surface, &view, &job.lines, &job.page);
-    let drawing = drawing.map_err(|error| failed(job, &error))?;
+    let mut drawing = drawing.map_err(|error| failed(job, &error))?;
+    if let Some((options, scene)) = job.hatch.as_ref().zip(drawing.scene.take()) {
+        run.progress.stage("hatching");
+        let width_mm = job.output.plotting.hatch_width_mm(job.pen_width_mm);
+        let page = HatchPage::new(&drawing.page, width_mm);
+        let lines = DrawOptions {
+            exact: job.lines.exact,
+            contact_tolerance: Some(0.0),
+            ..DrawOptions::default()
+        };
+        let drawn = &mut drawing.drawn;
+        let hatched = timed(&mut drawn.seconds.visibility, || {
+            hatch(&scene, &drawing.camera, options, &lines, &page)
+        });
+        drawn.drawing.append(&hatched.map_err(|error| hatching::with_remedy(&error))?);
+        drawing.is_ordered = false;
+    }
     warnings.extend(drawing.notes.iter().map(noted));
     let is_json = job.output.format == Format::Json;
     if let Some(every) = drawing.crowded(job.pen_width_mm).filter(|_| !is_json) {
@@ -131,16 +151,15 @@ fn without_levels(none: &NoLevels) -> String {
 
 fn plot_options(job: &Job) -> PlotOptions {
     let pens = job.output.plotting.pens(job.pen_width_mm);
+    let pens = if job.lines.underside { with_underside_pen(pens, job.pen_width_mm) } else { pens };
+    let pens = if job.hatch.is_some() { with_hatch_pen(pens, job.pen_width_mm) } else { pens };
     PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: HiddenLines::None,
         dash: Dash { dash_mm: 2.5, gap_mm: 1.25 },
         keep_dashes_whole: false,
         title: job.sheets.title(),
-        pens: job.output.plotting.with_kinds_apart(
-            if job.lines.underside { with_underside_pen(pens, job.pen_width_mm) } else { pens },
-            job.pen_width_mm,
-        ),
+        pens: job.output.plotting.with_kinds_apart(pens, job.pen_width_mm),
         source: source::source(config::arguments()),
     }
 }

@@ -95,7 +95,7 @@ pub(super) fn scale(text: &str) -> Result<f64, String> {
 }
 
 /// What [`lines`] knows.
-const KINDS_OF_LINE: [&str; 10] = [
+const KINDS_OF_LINE: [&str; 11] = [
     "silhouette",
     "crease",
     "boundary",
@@ -105,6 +105,7 @@ const KINDS_OF_LINE: [&str; 10] = [
     "material",
     "mesh",
     "outline",
+    "shadow",
     "all",
 ];
 
@@ -144,6 +145,7 @@ fn lines(text: &str) -> Result<LineSelection, String> {
             "material" => lines.with(StrokeKind::Material),
             "mesh" => lines.with(StrokeKind::Mesh),
             "outline" => lines.with_outline(),
+            "shadow" => lines.with(StrokeKind::Shadow),
             other => {
                 let hint = suggestion(other, KINDS_OF_LINE.into_iter());
                 return Err(format!("unknown line kind `{other}`{hint}"));
@@ -222,7 +224,7 @@ fn layer_controls(parts: &[&str]) -> Result<LayerControls, String> {
 }
 
 fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
-    const KINDS: [StrokeKind; 13] = [
+    const KINDS: [StrokeKind; 14] = [
         StrokeKind::Silhouette,
         StrokeKind::Crease,
         StrokeKind::Boundary,
@@ -236,6 +238,7 @@ fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
         StrokeKind::Axis,
         StrokeKind::Text,
         StrokeKind::Hatch,
+        StrokeKind::Shadow,
     ];
     let level = name.strip_prefix("hidden").and_then(|level| level.parse().ok());
     if let Some(level @ 1..=99) = level {

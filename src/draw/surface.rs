@@ -62,6 +62,8 @@ pub struct SurfaceOutput {
     /// Whether the strokes run along the lines of a grid already, with short pen-up travel and none on
     /// another, and are too many to be joined and ordered again in a moment.
     pub is_ordered: bool,
+    /// The triangles between the samples, if they were to be kept.
+    pub scene: Option<Scene>,
     ink: Ink,
 }
 
@@ -162,7 +164,12 @@ pub fn draw_surface(
     let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
     let is_ordered = grid.is_some() && !is_edge_on && drawing.n_points() > FEW_POINTS;
     let samples = surface.to_string();
-    Ok(SurfaceOutput { drawn, size, camera, page, extent, samples, notes, is_ordered, ink })
+    let scene = match lined {
+        _ if !lines.keep_scene => None,
+        Some(lined) => Some(lined.scene),
+        None => Some(self::lined(&surface, lines, every)?.scene),
+    };
+    Ok(SurfaceOutput { drawn, size, camera, page, extent, samples, notes, is_ordered, scene, ink })
 }
 
 impl SurfaceOutput {

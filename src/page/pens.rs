@@ -128,6 +128,9 @@ const PALETTE: [&str; 8] =
 /// lines.
 const OUTLINE_COLOR: &str = "#101010";
 
+/// Nearly black too, and different from both.
+const HATCH_COLOR: &str = "#202020";
+
 /// Blue: easy to distinguish from the black of upper sides, for people and for programs.
 const UNDERSIDE_COLOR: &str = "#0000c0";
 
@@ -154,6 +157,13 @@ pub fn with_line_pens(
         let color = format!("#{gray:02x}{gray:02x}{gray:02x}");
         add_pen(&mut rules, PenRole::HiddenLevel(level), width_mm, color);
     }
+    rules
+}
+
+/// Adds the usual pen of hatching to `rules`, unless these have one: as wide as the others, on a layer of
+/// its own.
+pub fn with_hatch_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
+    add_pen(&mut rules, PenRole::Kind(StrokeKind::Hatch), width_mm, HATCH_COLOR.into());
     rules
 }
 

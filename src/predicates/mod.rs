@@ -43,14 +43,18 @@
 pub mod cut;
 pub mod exact;
 
+mod cast;
 mod corner;
+mod free_plane;
 mod pierced;
 mod planes;
 mod sight;
 mod volume;
 
+pub use cast::Screen;
 pub use corner::{Corner, CornerPlace};
 pub use cut::{Cut, CutPlane};
+pub use free_plane::FreePlane;
 pub use pierced::{Homogeneous, PiercePoint};
 pub use planes::{Plane, PlaneName, Planes};
 pub use sight::{PlaneThrough, Sight, Slab, Viewpoint};

@@ -1,11 +1,12 @@
-//! Constructed points: where an edge meets the plane of a triangle.
+//! Constructed points: where an edge meets a plane, that of a triangle or one given by numbers.
 //!
 //! Such a point is a ratio of polynomials in the input. It is kept as a pair of `f64` for the
 //! filters, with a bound of what is missing, and in integers for the exact path, so that decisions
 //! about it are as exact as about any vertex. M. Attene, "Indirect predicates for geometric
 //! constructions", Computer-Aided Design 126 (2020), calls it an LPI (line-plane intersection);
 //! here its coordinates are evaluated once instead of in each predicate, since there are few of
-//! them and each is asked about often.
+//! them and each is asked about often. Points of hatch lines are many, and rarely need them: they
+//! keep what defines them instead.
 //!
 //! ```text
 //!             q ●
@@ -16,6 +17,7 @@
 //!        p ●
 //! ```
 
+use super::FreePlane;
 use super::exact::{self, Dyadic};
 use dashu_int::IBig;
 use glam::DVec3;
@@ -53,9 +55,23 @@ impl Homogeneous {
         let x = std::array::from_fn(|i| q[i].clone() * of_p.clone() - p[i].clone() * of_q.clone());
         Self { x, w }
     }
+
+    /// Where the edge from `p` to `q`, whose ends lie strictly on opposite sides, meets a plane.
+    fn on_plane(ends: [DVec3; 2], plane: &FreePlane) -> Self {
+        let [p, q] = ends.map(Self::from);
+        let (of_p, of_q) = (plane.exact_value(&p), plane.exact_value(&q));
+        let w = of_p.clone() - of_q.clone();
+        let (of_p, of_q, w) = match w.sign() {
+            super::Sign::Negative => (-of_p, -of_q, -w),
+            _ => (of_p, of_q, w),
+        };
+        let x =
+            std::array::from_fn(|i| q.x[i].clone() * of_p.clone() - p.x[i].clone() * of_q.clone());
+        Self { x, w }
+    }
 }
 
-/// Where an edge pierces a triangle.
+/// Where an edge meets a plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PiercePoint {
     edge: [u32; 2],
@@ -64,9 +80,23 @@ pub struct PiercePoint {
     high: DVec3,
     low: DVec3,
     error: DVec3,
-    /// `None` when `high` is the very point.
-    exact: Option<Homogeneous>,
+    exact: Truth,
 }
+
+/// Where the exact coordinates of a constructed point are.
+#[derive(Debug, Clone, PartialEq)]
+enum Truth {
+    /// The rounded point is the very point.
+    Rounded,
+    /// Here.
+    Known(Homogeneous),
+    /// They are computed when asked for, which is rare: where an edge, by its ends, meets a plane.
+    OnPlane([DVec3; 2], FreePlane),
+}
+
+/// Rounded points on planes are taken as they are up to this error, as a part of their largest
+/// coordinate; above it they are computed from integers. It bounds a construction, not a decision.
+const POINT_ERROR: f64 = 8.0 * f64::EPSILON;
 
 impl PiercePoint {
     /// Where `edge` meets the plane of `triangle`, by vertex numbers in `positions`.
@@ -81,15 +111,20 @@ impl PiercePoint {
     ) -> Self {
         let at = |v: u32| positions[v as usize];
         let exact = Homogeneous::pierced(edge.map(at), triangle.map(at));
+        Self { edge, triangle, other_edge, ..Self::rounding(exact) }
+    }
+
+    /// A point on no edge and in no plane, as far as numbers of vertices tell.
+    pub(super) fn rounding(exact: Homogeneous) -> Self {
         let high = DVec3::from_array(std::array::from_fn(|i| ratio(&exact.x[i], &exact.w)));
         let rest: [Dyadic; 3] =
             std::array::from_fn(|i| exact.x[i].clone() - exact.w.clone() * Dyadic::from(high[i]));
         let low = DVec3::from_array(std::array::from_fn(|i| ratio(&rest[i], &exact.w)));
         let is_exact = rest.iter().all(|x| x.sign() == super::Sign::Zero);
         Self {
-            edge,
-            triangle,
-            other_edge,
+            edge: [u32::MAX; 2],
+            triangle: [u32::MAX; 3],
+            other_edge: None,
             // Adding zero turns −0 into 0.
             high: high + DVec3::ZERO,
             low,
@@ -101,8 +136,40 @@ impl PiercePoint {
                 // Products with such numbers may vanish: nothing is known without the exact path.
                 DVec3::INFINITY
             },
-            exact: (!is_exact).then_some(exact),
+            exact: if is_exact { Truth::Rounded } else { Truth::Known(exact) },
         }
+    }
+
+    /// A point that is known to be on an edge, by vertex numbers.
+    pub(super) fn rounding_on(edge: [u32; 2], exact: Homogeneous) -> Self {
+        Self { edge, ..Self::rounding(exact) }
+    }
+
+    /// Where `edge`, by vertex numbers in `positions`, meets a plane given by numbers. Its ends must
+    /// lie strictly on opposite sides, or one of them on the plane.
+    pub fn on_plane(positions: &[DVec3], edge: [u32; 2], plane: FreePlane) -> Self {
+        let ends = edge.map(|v| positions[v as usize]);
+        let at = ends.map(|end| plane.value(end));
+        // From the nearer end, where the part of the way is smaller.
+        let (near, far) = if at[0].value.abs() <= at[1].value.abs() { (0, 1) } else { (1, 0) };
+        let difference = at[near].value - at[far].value;
+        let t = at[near].value / difference;
+        // As for `Sight::cut`; twice that, below, also covers the roundings of the point.
+        let error_of_t = (at[far].value.abs() * at[near].error
+            + at[near].value.abs() * at[far].error)
+            / (difference * difference)
+            + 1.5 * f64::EPSILON * t;
+        let step = ends[far] - ends[near];
+        let point = ends[near] + step * t;
+        let error = step.abs() * (2.0 * error_of_t) + point.abs() * f64::EPSILON;
+        let size = ends[0].abs().max(ends[1].abs()).max_element();
+        if error.max_element() <= POINT_ERROR * size && ends.iter().all(super::sight::fits_filter) {
+            let triangle = [u32::MAX; 3];
+            let (high, low) = (point + DVec3::ZERO, DVec3::ZERO);
+            let exact = Truth::OnPlane(ends, plane);
+            return Self { edge, triangle, other_edge: None, high, low, error, exact };
+        }
+        Self::rounding_on(edge, Homogeneous::on_plane(ends, &plane))
     }
 
     /// The point, rounded: within four units in the last place of each coordinate.
@@ -122,7 +189,7 @@ impl PiercePoint {
 
     /// Whether the rounded point is the very point.
     pub fn is_exact(&self) -> bool {
-        self.exact.is_none()
+        self.exact == Truth::Rounded
     }
 
     /// Whether the point lies on the line through two vertices, by the numbers of those alone.
@@ -141,7 +208,11 @@ impl PiercePoint {
 
     /// The point in homogeneous coordinates.
     pub fn homogeneous(&self) -> Homogeneous {
-        self.exact.clone().unwrap_or_else(|| Homogeneous::from(self.high))
+        match &self.exact {
+            Truth::Rounded => Homogeneous::from(self.high),
+            Truth::Known(exact) => exact.clone(),
+            Truth::OnPlane(ends, plane) => Homogeneous::on_plane(*ends, plane),
+        }
     }
 
     /// The order by x, then y, then z, exactly. On any one line it is the order along the line.
@@ -182,7 +253,7 @@ impl PiercePoint {
             high: position,
             low: DVec3::ZERO,
             error: DVec3::ZERO,
-            exact: None,
+            exact: Truth::Rounded,
         }
     }
 }

@@ -311,11 +311,36 @@ impl<'a> Sight<'a> {
         exact::facing(polygon.iter().map(|&v| self.position(v)), viewpoint)
     }
 
-    /// Whether the images of two vertices are the same point.
+    /// Whether the images of two points are the same, where one of them at least is constructed.
+    fn same_image_of_constructed(&self, ends: [u32; 2]) -> bool {
+        let known = ends.map(|x| match self.pierced(x) {
+            None => (self.position(x), DVec3::ZERO, DVec3::ZERO),
+            Some(point) => (point.rounded(), point.rest(), point.error()),
+        });
+        let [(a, rest_a, error_a), (b, rest_b, error_b)] = known;
+        let (sight, sight_error) = match self.viewpoint {
+            Viewpoint::Eye(eye) => (a - eye + rest_a, error_a),
+            Viewpoint::Direction(forward) => (forward, DVec3::ZERO),
+        };
+        let (along, along_error) = (b - a + (rest_b - rest_a), error_a + error_b);
+        let spread = |u: DVec3, v: DVec3| PlaneThrough::new(u.abs(), v.abs(), DVec3::ZERO).spread;
+        let error = 2.0 * TRIPLE_PRODUCT_ERROR * spread(sight, along)
+            + 2.0 * (spread(sight_error, along) + spread(sight.abs() + sight_error, along_error));
+        if self.in_window && sight.cross(along).abs().cmpgt(error).any() {
+            return false;
+        }
+        self.count_exact();
+        let points = ends.map(|x| match self.pierced(x) {
+            Some(point) => point.homogeneous(),
+            None => Homogeneous::from(self.position(x)),
+        });
+        pierced::same_image(self.viewpoint, [&points[0], &points[1]])
+    }
+
+    /// Whether the images of two points are the same.
     pub fn same_image(&self, a: u32, b: u32) -> bool {
-        if let Some([a, b]) = self.homogeneous([a, b]) {
-            self.count_exact();
-            return pierced::same_image(self.viewpoint, [&a, &b]);
+        if [a, b].iter().any(|&x| self.pierced(x).is_some()) {
+            return self.same_image_of_constructed([a, b]);
         }
         let plane = self.sight_plane(a, b);
         let differs = plane.normal.abs().cmpgt(TRIPLE_PRODUCT_ERROR * plane.spread).any();

@@ -295,7 +295,7 @@ impl<'a> Shader<'a> {
         let mut shader = Self {
             scene,
             camera,
-            light: Light::new(options.light, camera),
+            light: Light::new(options.light.into(), camera),
             show: options.show,
             depth_cue: options.depth_cue.clamp(0.0, 1.0),
             paint,
@@ -338,7 +338,8 @@ impl<'a> Shader<'a> {
         let towards = if normal.dot(sight) > 0.0 { -normal } else { normal };
         let part_of = self.scene.mesh().face_parts().get(face as usize);
         let paint = part_of.and_then(|&part| self.part_paints.get(part as usize));
-        let lit = *paint.unwrap_or(&self.paint) * self.light.tone(towards.normalize_or_zero());
+        let lit =
+            *paint.unwrap_or(&self.paint) * self.light.tone(towards.normalize_or_zero(), first);
         lit.lerp(DVec3::ONE, self.depth_cue * part)
     }
 }

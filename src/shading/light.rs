@@ -7,14 +7,16 @@
 //!            ●─┴────
 //! ```
 //!
-//! Lambert's law.
+//! Lambert's law. The light is far away, as the sun is, or a lamp at a point. What it reaches is what a
+//! camera in its place sees: [`Light::camera`].
 
 use glam::DVec3;
+use thiserror::Error;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, DEFAULT_FOV_DEG, Projection};
 
-/// The tone of faces turned away from the light.
-const AMBIENT: f64 = 0.25;
+/// The tone of faces turned away from the light, unless set otherwise.
+pub const AMBIENT: f64 = 0.25;
 
 /// The default light: to the left of the viewer, above, and behind, along right, up and forward.
 const LEFT_SHOULDER: DVec3 = DVec3::new(-0.45, 0.65, -0.85);
@@ -25,29 +27,120 @@ pub const DEFAULT_PAINT: [u8; 3] = [0xd8, 0xd4, 0xc8];
 /// How light the farthest point is in a picture of depth; the nearest is white.
 pub const FARTHEST: f64 = 0.1;
 
-/// Light from one direction, as from the sun.
+/// Where the light comes from.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum LightSource {
+    /// From over the viewer's left shoulder, from far away.
+    #[default]
+    Shoulder,
+    /// From this direction of the world, from far away, as the sun's light.
+    From(DVec3),
+    /// From this point of the world, as a lamp's light.
+    At(DVec3),
+}
+
+impl From<Option<DVec3>> for LightSource {
+    /// From a direction, or over the shoulder.
+    fn from(direction: Option<DVec3>) -> Self {
+        direction.map_or(Self::Shoulder, Self::From)
+    }
+}
+
+/// Why a light makes no shadows.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum LightError {
+    /// A lamp within the box around the scene would need to look all around.
+    #[error("the light at {0} is inside the box around the model, which reaches from {1} to {2}")]
+    Inside(DVec3, DVec3, DVec3),
+    /// Its numbers are out of range.
+    #[error("the light is too far away, or not at a finite place")]
+    OutOfRange,
+}
+
+/// The light of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Light {
-    /// Unit vector toward the light.
-    towards: DVec3,
+pub enum Light {
+    /// The sun.
+    Sun {
+        /// Towards it, of any length, as given: shadows fall exactly along it.
+        from: DVec3,
+        /// The same, of length one.
+        towards: DVec3,
+    },
+    /// The place of the lamp.
+    Lamp(DVec3),
 }
 
 impl Light {
-    /// Light from a direction in the world; `None`, or a zero vector, is light over the viewer's left
-    /// shoulder.
-    pub fn new(from: Option<DVec3>, camera: &Camera) -> Self {
+    /// The light as `camera` has it. A direction without length is light over the shoulder.
+    pub fn new(source: LightSource, camera: &Camera) -> Self {
         let frame = camera.frame();
         let DVec3 { x, y, z } = LEFT_SHOULDER;
         let shoulder = frame.right * x + frame.upward * y + frame.forward * z;
-        let towards = from.and_then(DVec3::try_normalize);
-        Self { towards: towards.unwrap_or_else(|| shoulder.normalize_or_zero()) }
+        let from = match source {
+            LightSource::At(place) => return Self::Lamp(place),
+            LightSource::From(direction) if direction != DVec3::ZERO => direction,
+            _ => shoulder,
+        };
+        let towards = (from / from.abs().max_element()).normalize_or_zero();
+        Self::Sun { from, towards }
     }
 
-    /// How light a face is, from 0 to 1, by its normal of length one on the side of the viewer.
-    pub fn tone(&self, normal: DVec3) -> f64 {
-        AMBIENT + (1.0 - AMBIENT) * normal.dot(self.towards).max(0.0)
+    /// The direction towards the light, of length one, from a point of the world.
+    #[inline]
+    pub fn towards(&self, from: DVec3) -> DVec3 {
+        match self {
+            Self::Sun { towards, .. } => *towards,
+            Self::Lamp(place) => (place - from).normalize_or_zero(),
+        }
+    }
+
+    /// Whether it shines from above on a horizontal plane at `z`.
+    pub fn is_above(&self, z: f64) -> bool {
+        match self {
+            Self::Sun { from, .. } => from.z > 0.0,
+            Self::Lamp(place) => place.z > z,
+        }
+    }
+
+    /// How light a point of a face is, from 0 to 1, by its normal of length one on the side of the
+    /// viewer.
+    pub fn tone(&self, normal: DVec3, at: DVec3) -> f64 {
+        AMBIENT + (1.0 - AMBIENT) * normal.dot(self.towards(at)).max(0.0)
+    }
+
+    /// A camera in the place of the light: what it sees of a scene within `bounds` is lit. All of that
+    /// box lies in front of it.
+    ///
+    /// # Errors
+    /// See [`LightError`].
+    pub fn camera(&self, (low, high): (DVec3, DVec3)) -> Result<Camera, LightError> {
+        let (eye, target, projection) = match *self {
+            Self::Sun { from, .. } => {
+                // As far away as the scene is large; a power of two keeps the direction as it is.
+                let size = low.abs().max(high.abs()).max_element();
+                let ratio = size / from.abs().max_element();
+                let scale = libm::exp2(libm::floor(libm::log2(ratio)));
+                let scale = if scale > 0.0 && scale.is_finite() { scale } else { 1.0 };
+                (from * scale, DVec3::ZERO, Projection::Orthographic)
+            }
+            Self::Lamp(place) => {
+                let nearest = place.clamp(low, high);
+                if nearest == place {
+                    return Err(LightError::Inside(place, low, high));
+                }
+                // Nothing of the box is nearer than this point, whatever it is seen from.
+                let near = NEAR_OF_LAMP;
+                (place, nearest, Projection::Perspective { fov_deg: DEFAULT_FOV_DEG, near })
+            }
+        };
+        let up = (target - eye).any_orthogonal_vector();
+        Camera::new(eye, target, up, projection).map_err(|_| LightError::OutOfRange)
     }
 }
+
+/// The near plane of a lamp's camera, as a part of its distance from the scene.
+const NEAR_OF_LAMP: f64 = 1e-6;
 
 /// A color as parts from 0 to 1.
 pub fn parts(color: [u8; 3]) -> DVec3 {

@@ -2,6 +2,8 @@
 
 pub mod light;
 
+pub mod normals;
+
 pub mod fill;
 
 pub mod white;

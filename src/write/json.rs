@@ -55,6 +55,8 @@ struct StrokeRecord<'a> {
     outline: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     side: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lit: Option<bool>,
     #[serde(serialize_with = "serialize_points")]
     points: &'a [glam::DVec2],
 }
@@ -102,7 +104,7 @@ impl<'a> From<Stroke<'a>> for StrokeRecord<'a> {
         let qi = (!visible).then_some(stroke.qi);
         let (kind, outline) = (stroke.kind.name(), stroke.outline);
         let side = stroke.underside.then_some("lower");
-        Self { kind, visible, qi, outline, side, points: stroke.points }
+        Self { kind, visible, qi, outline, side, lit: stroke.lit, points: stroke.points }
     }
 }
 

@@ -26,6 +26,7 @@ pub(super) struct LineArgs {
     ///   mesh, all     every edge of the mesh
     ///   outline       silhouette, boundary and nonmanifold edges where the background is seen
     ///                 beside them; with other kinds it has its own pen, twice as wide
+    ///   shadow        outlines of the shadows that --light casts, also on the --ground
     ///
     /// An edge to which several kinds apply is drawn when any of them is named.
     #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, verbatim_doc_comment)]

@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::stages::classify::LineSelection;
 use hiddenline::stages::engines::image::ImageEngine;
+use hiddenline::stages::shading::light::LightSource;
 use hiddenline::stages::shading::preview::{Pixels, PreviewOptions, Show};
 
 use crate::cli::choice::one_of;
@@ -23,7 +24,8 @@ pub(super) struct PictureArgs {
     #[arg(long, value_name = "WHAT", value_parser = one_of::<Show>(), conflicts_with = "tone")]
     #[arg(default_value = Show::Shaded.name())]
     show: Show,
-    /// Show how light each point is, as gray from 0 to 255; the same as --show tone
+    /// Show how light each point is, as gray from 0 to 255, with the shadows that `draw --hatch`
+    /// casts; the same as --show tone
     #[arg(long, conflicts_with_all = ["paint", "edges"])]
     tone: bool,
     /// Whether faces look flat or curved
@@ -35,6 +37,10 @@ pub(super) struct PictureArgs {
     /// Direction toward the light [default: over the viewer's left shoulder]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
+    /// Where the light is: a point outside the model
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "light")]
+    light_at: Option<DVec3>,
     /// Color of the faces
     #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
     #[arg(default_value = "#d8d4c8")]
@@ -120,7 +126,7 @@ impl PictureArgs {
             pixels,
             show,
             smooth_deg: (self.shading == Shading::Smooth).then_some(self.smooth_angle),
-            light: self.light,
+            light: self.light_at.map_or(self.light.into(), LightSource::At),
             color: self.paint,
             background: self.background,
             fit_fov: self.fit_fov,

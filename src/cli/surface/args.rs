@@ -12,6 +12,7 @@ use super::input::SurfaceSource;
 use super::input_args::SurfaceInputArgs;
 use crate::cli::camera::CameraArgs;
 use crate::cli::choice::one_of;
+use crate::cli::hatch::{HatchArgs, LightArgs};
 use crate::cli::output::{OutputArgs, check_place};
 use crate::cli::page::PageArgs;
 use crate::cli::{Refused, values};
@@ -49,6 +50,10 @@ pub(in crate::cli) struct SurfaceArgs {
     camera: CameraArgs,
     #[command(flatten)]
     lines: LineArgs,
+    #[command(flatten)]
+    hatch: HatchArgs,
+    #[command(flatten)]
+    light: LightArgs,
     #[command(flatten)]
     dressing: DressingArgs,
     #[command(flatten)]
@@ -159,7 +164,7 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage.
     pub(in crate::cli) fn job(self) -> Result<Job, Refused> {
-        let Self { surface, camera, lines, dressing, page, output } = self;
+        let Self { surface, camera, lines, hatch, light, dressing, page, output } = self;
         let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
         let mut sheets = sheets.ok_or("give a formula")?;
@@ -220,7 +225,9 @@ impl SurfaceArgs {
             sheets.aspect = Aspect::Data;
         }
         let view = camera.view_source();
-        let output = output.options(lines.exact)?;
+        let mut output = output.options(lines.exact)?;
+        output.warnings.extend(hatch.without_effect(false, &["--light", "--light-at"]));
+        let hatch = hatch.options(light.source());
         let inputs = sheets.file().into_iter().chain(view.input()).chain(output.inputs.clone());
         check_place(output.path.as_deref(), inputs)?;
         let titles = if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) };
@@ -240,6 +247,7 @@ impl SurfaceArgs {
             engine: lines.engine,
             order: lines.order,
             axes: titles,
+            keep_scene: hatch.is_some(),
             apart_by_kind: output.format == Format::Json,
             ..SurfaceLines::default()
         };
@@ -247,6 +255,7 @@ impl SurfaceArgs {
             sheets,
             view,
             lines,
+            hatch,
             page: output.within_reach(page.options()),
             unit_mm: page.unit_mm(),
             dxf_scale: page.dxf_scale(),

@@ -42,6 +42,8 @@ pub struct SurfaceLines {
     pub order: Option<CellOrder>,
     /// Titles of axes around the surface; `None` for no axes.
     pub axes: Option<Titles>,
+    /// Keep the triangles between the samples, for hatching.
+    pub keep_scene: bool,
     /// Join only pieces of one kind.
     pub apart_by_kind: bool,
     /// Strokes shorter than this are dropped if the surface is drawn as a mesh, in millimeters on paper.
@@ -66,6 +68,7 @@ impl Default for SurfaceLines {
             engine: SurfaceEngine::default(),
             order: None,
             axes: Some(Titles::default()),
+            keep_scene: false,
             apart_by_kind: false,
             shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
         }

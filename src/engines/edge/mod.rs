@@ -13,6 +13,7 @@
 //! its third vertex lies. A point is hidden when both its sides are covered.
 
 pub mod appel;
+pub mod lifted;
 pub mod outline;
 pub mod roberts;
 

@@ -66,7 +66,8 @@ fn solve_without(
     segments: &[Option<Segment>],
 ) -> (Visibility, LineCounts) {
     let index = ImageIndex::new(view, segments.iter().flatten(), options, back_faces);
-    let (visibility, counts) = run(view, options, segments, Some((&index, back_faces)));
+    let (visibility, counts) =
+        run(view, options, segments, Some((&index, back_faces)), Asked::Layers);
     (visibility, LineCounts { back_faces: back_faces.n_faces(), ..counts })
 }
 
@@ -75,7 +76,26 @@ pub fn solve_all_pairs(
     view: &ViewedScene,
     options: &VisibilityOptions,
 ) -> (Visibility, LineCounts) {
-    run(view, options, &segments(view), None)
+    run(view, options, &segments(view), None, Asked::Layers)
+}
+
+/// Finds where each drawn line of `view` is hidden on one of its sides and not on the other: there spans
+/// have `qi` 0, and 1 elsewhere.
+///
+/// In the light's view these are the borders of shadows.
+pub fn solve_borders(view: &ViewedScene, options: &VisibilityOptions) -> Visibility {
+    let (back_faces, segments) = (BackFaces::default(), segments(view));
+    let index = ImageIndex::new(view, segments.iter().flatten(), options, &back_faces);
+    run(view, options, &segments, Some((&index, &back_faces)), Asked::Borders).0
+}
+
+/// What spans tell.
+#[derive(Debug, Clone, Copy)]
+enum Asked {
+    /// Quantitative invisibility.
+    Layers,
+    /// 0 where one side is hidden and the other is not, else 1.
+    Borders,
 }
 
 /// The drawn edges as segments.
@@ -88,6 +108,7 @@ fn run(
     options: &VisibilityOptions,
     segments: &[Option<Segment>],
     shortcuts: Option<(&ImageIndex, &BackFaces)>,
+    asked: Asked,
 ) -> (Visibility, LineCounts) {
     let (index, back_faces) = shortcuts.unzip();
     let clippers: Mutex<Vec<Clipper>> = Mutex::new(Vec::new());
@@ -105,7 +126,8 @@ fn run(
                         visibility.push(&[hidden(segment)]);
                     }
                     Some(segment) => {
-                        visibility.push(clipper.clip(view, options, segment, index, &mut counts))
+                        let spans = clipper.clip(view, options, segment, index, asked, &mut counts);
+                        visibility.push(spans);
                     }
                     None => visibility.push(&[]),
                 }
@@ -148,6 +170,7 @@ impl Clipper {
         options: &VisibilityOptions,
         segment: &Segment,
         index: Option<&ImageIndex>,
+        asked: Asked,
         counts: &mut LineCounts,
     ) -> &[Span] {
         let sweep = &mut self.sweep;
@@ -165,7 +188,12 @@ impl Clipper {
         if wholly_hidden {
             return sweep.only(hidden(segment));
         }
-        sweep.spans(view.sight(), segment, options.count_layers)
+        match asked {
+            Asked::Layers => sweep.spans(view.sight(), segment, options.count_layers),
+            Asked::Borders => sweep.spans_by(view.sight(), segment, |[left, right]| {
+                u32::from((left > 0) == (right > 0))
+            }),
+        }
     }
 }
 

@@ -14,7 +14,6 @@
 
 use super::segment::Segment;
 use crate::classify::ViewedScene;
-use crate::model::scene::LineSource;
 use crate::predicates::{Cut, CutPlane, Estimate, Sign};
 use std::cmp::Ordering;
 
@@ -127,7 +126,7 @@ pub(super) fn shadow(
     let sight = view.sight();
     let mut range = Range { from: segment.from, to: segment.to };
     // Depth first: it rules out all that lies behind.
-    let in_plane = is_own_plane(view, segment, triangle) || {
+    let in_plane = view.is_known_in_plane_of(segment.edge, triangle) || {
         let plane = sight.triangle_plane(corners);
         let [a, b] = ends.map(|end| sight.depth_at(&plane, corners, end));
         let signs = [a.1.times(turn), b.1.times(turn)];
@@ -166,6 +165,32 @@ pub(super) fn image_cover(view: &ViewedScene, segment: &Segment, triangle: u32) 
     }
     let near_signs = near_signs(view, view.scene().triangles()[triangle as usize])?;
     let range = Range { from: segment.from, to: segment.to };
+    within_image(view, segment, triangle, near_signs, range).map(|(cover, _)| cover)
+}
+
+/// The part of `segment` that is strictly in front of `triangle` and has its image in that of it: what
+/// throws a shadow on it, if this is the view of the light. `None` for the triangle's own sides. Exact.
+pub(super) fn cover_of_front(
+    view: &ViewedScene,
+    segment: &Segment,
+    triangle: u32,
+) -> Option<Cover> {
+    let turn = view.triangle_turns()[triangle as usize];
+    let corners = view.scene().triangles()[triangle as usize];
+    let ends = segment.ends;
+    if turn == Sign::Zero || ends.iter().all(|end| corners.contains(end)) {
+        return None;
+    }
+    let near_signs = near_signs(view, corners)?;
+    let sight = view.sight();
+    let mut range = Range { from: segment.from, to: segment.to };
+    let plane = sight.triangle_plane(corners);
+    let [a, b] = ends.map(|end| sight.depth_at(&plane, corners, end));
+    let signs = [a.1, b.1].map(|sign| sign.times(turn).flipped());
+    let cut = || sight.cut(ends, CutPlane::Triangle(corners), [a.0, b.0]);
+    if signs == [Sign::Zero; 2] || !range.keep(view, ends, signs, cut) {
+        return None;
+    }
     within_image(view, segment, triangle, near_signs, range).map(|(cover, _)| cover)
 }
 
@@ -234,19 +259,6 @@ fn within_image(
     };
     let cover = Cover { from: range.from, to: range.to, sides };
     Some((cover, along.map(|side| [corners[side], corners[(side + 1) % 3]])))
-}
-
-/// Whether a segment is a line of intersection of faces in a triangle's plane: no sign need be asked.
-#[inline]
-fn is_own_plane(view: &ViewedScene, segment: &Segment, triangle: u32) -> bool {
-    let scene = view.scene();
-    match scene.source(segment.edge) {
-        Some(LineSource::Intersection(k)) => {
-            let crossings = scene.intersections();
-            crossings.is_in_plane_of(&crossings.lines()[k as usize], triangle)
-        }
-        _ => false,
-    }
 }
 
 /// The side of the segment's image on which a vertex lies that is not on it.

@@ -79,6 +79,20 @@ impl Sweep {
         segment: &Segment,
         count_layers: bool,
     ) -> &[Span] {
+        self.spans_by(sight, segment, |[left, right]| {
+            let layers = left.min(right);
+            if count_layers { layers } else { layers.min(1) }
+        })
+    }
+
+    /// The spans in which a number is constant that the layers on the left and right make; it stands in
+    /// place of the quantitative invisibility.
+    pub(super) fn spans_by(
+        &mut self,
+        sight: &Sight,
+        segment: &Segment,
+        number: impl Fn([u32; 2]) -> u32,
+    ) -> &[Span] {
         let ends = segment.ends;
         // Equal cuts may come in any order: their changes are added before a span begins.
         self.events.sort_unstable_by(|a, b| sight.cut_order(ends, &a.at, &b.at));
@@ -89,7 +103,7 @@ impl Sweep {
         for event in &self.events {
             if sight.cut_order(ends, &start, &event.at) == Ordering::Less {
                 self.lowest = self.lowest.min(counts[0]).min(counts[1]);
-                push(&mut self.spans, &start, &event.at, counts, count_layers);
+                push(&mut self.spans, &start, &event.at, counts, &number);
                 start = event.at;
             }
             for (count, change) in counts.iter_mut().zip(event.change) {
@@ -98,17 +112,22 @@ impl Sweep {
         }
         if sight.cut_order(ends, &start, &segment.to) == Ordering::Less || self.spans.is_empty() {
             self.lowest = self.lowest.min(counts[0]).min(counts[1]);
-            push(&mut self.spans, &start, &segment.to, counts, count_layers);
+            push(&mut self.spans, &start, &segment.to, counts, &number);
         }
         &self.spans
     }
 }
 
 /// Appends a span, or lengthens the last one when nothing changes.
-fn push(spans: &mut Vec<Span>, from: &Cut, to: &Cut, counts: [i32; 3], count_layers: bool) {
+fn push(
+    spans: &mut Vec<Span>,
+    from: &Cut,
+    to: &Cut,
+    counts: [i32; 3],
+    number: impl Fn([u32; 2]) -> u32,
+) {
     let [left, right, doubled] = counts;
-    let layers = left.min(right).max(0) as u32;
-    let qi = if count_layers { layers } else { layers.min(1) };
+    let qi = number([left, right].map(|layers| layers.max(0) as u32));
     let doubled = doubled > 0;
     // Rounding may put two cuts the other way round by a unit in the last place.
     let t0 = spans.last().map_or(from.t, |last: &Span| last.t1);

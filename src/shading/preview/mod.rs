@@ -9,10 +9,11 @@
 
 mod overlay;
 mod shade;
+mod shadow;
 
 use std::io::{self, Write};
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use png::{BitDepth, ColorType, Compression, Encoder};
 use rayon::prelude::*;
 use thiserror::Error;
@@ -26,7 +27,7 @@ use crate::engines::image::{
     ImageEngine, NOTHING, PixelMap, Raster, a_buffer, painter, solve_strip,
 };
 use crate::model::scene::Scene;
-use crate::shading::light::{DEFAULT_PAINT, to_bytes};
+use crate::shading::light::{DEFAULT_PAINT, LightError, LightSource, to_bytes};
 use crate::strokes::Strokes;
 use crate::timing::{Seconds, timed};
 
@@ -58,7 +59,8 @@ pub enum Show {
     /// Their color in the light.
     #[default]
     Shaded,
-    /// How light they are, as gray: 0 black, 255 white; without color. The background is white.
+    /// How light they are, as gray: 0 black, 255 white; without color. The background is white. Where
+    /// something casts a shadow, the tone is that of faces turned away from the light.
     Tone,
     /// How near they are: the nearest point of the scene white, the farthest dark.
     Depth,
@@ -106,8 +108,8 @@ pub struct PreviewOptions {
     /// Faces that meet at this angle, in degrees, or less look like one curved surface; `None` for
     /// flat faces.
     pub smooth_deg: Option<f64>,
-    /// Where the light comes from, in world directions; `None` for the viewer's left shoulder.
-    pub light: Option<DVec3>,
+    /// Where the light comes from.
+    pub light: LightSource,
     /// Color of the faces.
     pub color: [u8; 3],
     /// Color where no face is seen; `None` to suit what is shown.
@@ -125,7 +127,7 @@ impl Default for PreviewOptions {
             pixels: Pixels::Centers(ImageEngine::default()),
             show: Show::default(),
             smooth_deg: None,
-            light: None,
+            light: LightSource::default(),
             color: DEFAULT_PAINT,
             background: None,
             fit_fov: false,
@@ -146,6 +148,9 @@ pub enum PreviewError {
     /// The painter cannot order the faces.
     #[error(transparent)]
     NoOrder(#[from] painter::NoOrder),
+    /// The light makes no shadows.
+    #[error(transparent)]
+    Light(#[from] LightError),
     /// The stream failed.
     #[error(transparent)]
     Write(#[from] io::Error),
@@ -199,7 +204,7 @@ pub fn write(
         }
     })?;
     let shader =
-        timed(&mut seconds.classify, || Shader::new(scene, camera, &fine, &raster, options));
+        timed(&mut seconds.classify, || Shader::new(scene, camera, &fine, &raster, options))?;
     let rows_of_strip = STRIP_ROWS / samples;
     let overlay =
         edges.map(|edges| Overlay::new(edges, &map, options.stroke_px, height, rows_of_strip));

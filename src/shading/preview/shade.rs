@@ -5,13 +5,14 @@
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 
+use super::shadow::ShadowGrid;
 use super::{PreviewOptions, Show};
 use crate::camera::{Camera, Frame, Projection};
 use crate::engines::image::{NOTHING, PixelMap, Raster};
 use crate::model::scene::Scene;
-use crate::shading::light::{FARTHEST, Light, number_color, parts};
+use crate::shading::light::{AMBIENT, FARTHEST, Light, LightError, number_color, parts};
+use crate::shading::normals::{area_vector, corners, smooth_normals};
 
 pub(super) struct Shader<'a> {
     scene: &'a Scene,
@@ -21,6 +22,8 @@ pub(super) struct Shader<'a> {
     map: PixelMap,
     show: Show,
     light: Light,
+    /// Where the light does not reach; `None` where shadows are not shown.
+    shadows: Option<ShadowGrid<'a>>,
     color: DVec3,
     background: DVec3,
     /// For each corner of each triangle; empty for flat shading.
@@ -36,7 +39,7 @@ impl<'a> Shader<'a> {
         map: &PixelMap,
         raster: &'a Raster,
         options: &PreviewOptions,
-    ) -> Self {
+    ) -> Result<Self, LightError> {
         let frame = camera.frame();
         let normals = match options.smooth_deg {
             Some(angle) if matches!(options.show, Show::Shaded | Show::Tone | Show::Normals) => {
@@ -56,19 +59,27 @@ impl<'a> Shader<'a> {
                 .map(|distance| (distance, distance))
                 .reduce(|| (f64::INFINITY, f64::NEG_INFINITY), range);
         }
-        Self {
+        let light = Light::new(options.light, camera);
+        let shadows = match scene.mesh().bounds() {
+            Some(bounds) if options.show == Show::Tone => {
+                Some(ShadowGrid::new(scene, light.camera(bounds)?))
+            }
+            _ => None,
+        };
+        Ok(Self {
             scene,
             raster,
             camera: *camera,
             frame,
             map: *map,
             show: options.show,
-            light: Light::new(options.light, camera),
+            light,
+            shadows,
             color: parts(options.color),
             background: parts(options.background.unwrap_or(options.show.background())),
             normals,
             distances,
-        }
+        })
     }
 
     /// The color where no face is seen.
@@ -78,7 +89,8 @@ impl<'a> Shader<'a> {
 
     /// Whether all of a triangle has one color.
     pub(super) fn is_even(&self) -> bool {
-        self.normals.is_empty() && self.show != Show::Depth
+        let is_lamp = matches!(self.light, Light::Lamp(_));
+        self.normals.is_empty() && !is_lamp && self.shadows.is_none() && self.show != Show::Depth
     }
 
     /// The color of an item at a point of the picture, components from 0 to 1.
@@ -108,12 +120,27 @@ impl<'a> Shader<'a> {
     }
 
     fn tone(&self, triangle: u32, pixel: DVec2) -> f64 {
-        self.light.tone(self.normal(triangle, pixel))
+        let normal = self.normal(triangle, pixel);
+        let at = self.place(triangle, pixel);
+        match &self.shadows {
+            Some(shadows) if normal.dot(self.light.towards(at)) > 0.0 => {
+                if shadows.hides(at, triangle) { AMBIENT } else { self.light.tone(normal, at) }
+            }
+            _ => self.light.tone(normal, at),
+        }
+    }
+
+    /// Where the sight line through a point of the picture meets a triangle's plane.
+    fn place(&self, triangle: u32, pixel: DVec2) -> DVec3 {
+        let corners = corners(self.scene, triangle);
+        let flat = area_vector(corners);
+        let (from, along) = self.ray(pixel);
+        from + along * (flat.dot(corners[0] - from) / flat.dot(along))
     }
 
     /// The unit normal used for shading, on the side of the viewer.
     fn normal(&self, triangle: u32, pixel: DVec2) -> DVec3 {
-        let corners = positions(self.scene, triangle);
+        let corners = corners(self.scene, triangle);
         let flat = area_vector(corners);
         let from = self.camera.eye();
         let ray = self.ray(pixel);
@@ -123,9 +150,7 @@ impl<'a> Shader<'a> {
         };
         let normal = match self.normals.get(triangle as usize) {
             Some(normals) => {
-                // Where the sight line meets the triangle's plane.
-                let t = flat.dot(corners[0] - ray.0) / flat.dot(ray.1);
-                let x = ray.0 + ray.1 * t;
+                let x = self.place(triangle, pixel);
                 let [a, b, c] = corners;
                 let parts =
                     [[x, b, c], [a, x, c], [a, b, x]].map(|part| area_vector(part).dot(flat));
@@ -148,66 +173,4 @@ impl<'a> Shader<'a> {
             Projection::Orthographic => (self.camera.eye() + aside, self.frame.forward),
         }
     }
-}
-
-fn positions(scene: &Scene, triangle: u32) -> [DVec3; 3] {
-    scene.triangles()[triangle as usize].map(|vertex| scene.mesh().positions()[vertex as usize])
-}
-
-/// The normal of a triangle; its length is twice the area.
-fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
-}
-
-/// At vertices with more triangles than this, the mean is that of all: the tip of such a fine fan is not a
-/// corner, and comparing each pair would take too long.
-const MOST_COMPARED: usize = 256;
-
-/// For each corner of each triangle the mean normal, by area, of the triangles at that vertex that
-/// meet it at `angle_deg` or less; see [`MOST_COMPARED`]. O(triangles), in parallel.
-fn smooth_normals(scene: &Scene, angle_deg: f64) -> Vec<[DVec3; 3]> {
-    let triangles = scene.triangles();
-    let cosine = libm::cos(angle_deg.clamp(0.0, 180.0).to_radians());
-    let flat: Vec<DVec3> = (0..triangles.len() as u32)
-        .into_par_iter()
-        .map(|triangle| area_vector(positions(scene, triangle)))
-        .collect();
-    let mut starts = vec![0; scene.mesh().positions().len() + 1];
-    for vertex in triangles.iter().flatten() {
-        starts[*vertex as usize + 1] += 1;
-    }
-    for k in 1..starts.len() {
-        starts[k] += starts[k - 1];
-    }
-    let mut next = starts.clone();
-    let mut around = vec![0u32; triangles.len() * 3];
-    for (number, triangle) in (0..).zip(triangles) {
-        for &vertex in triangle {
-            around[next[vertex as usize]] = number;
-            next[vertex as usize] += 1;
-        }
-    }
-    let range = |vertex: u32| starts[vertex as usize]..starts[vertex as usize + 1];
-    let of_all = |vertex: u32| -> DVec3 {
-        around[range(vertex)].iter().map(|&triangle| flat[triangle as usize]).sum()
-    };
-    let is_crowded = |vertex: &u32| range(*vertex).len() > MOST_COMPARED;
-    let crowded: FxHashMap<u32, DVec3> = (0..scene.mesh().positions().len() as u32)
-        .filter(is_crowded)
-        .map(|vertex| (vertex, of_all(vertex).normalize_or_zero()))
-        .collect();
-    let mean = |own: DVec3, vertex: u32| {
-        if let Some(&mean) = crowded.get(&vertex) {
-            return mean;
-        }
-        let range = range(vertex);
-        let near = around[range].iter().map(|&other| flat[other as usize]);
-        let near = near.filter(|other| own.dot(*other) >= cosine * own.length() * other.length());
-        near.sum::<DVec3>().normalize_or_zero()
-    };
-    triangles
-        .par_iter()
-        .zip(&flat)
-        .map(|(triangle, &own)| triangle.map(|vertex| mean(own, vertex)))
-        .collect()
 }

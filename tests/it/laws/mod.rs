@@ -14,6 +14,7 @@ mod extent;
 mod flush;
 mod framing;
 mod front_door;
+mod hatch;
 mod intersections;
 mod invariance;
 mod layers;

@@ -11,6 +11,7 @@ pub(crate) mod compare;
 mod cover;
 pub(crate) mod crossings;
 pub(crate) mod exact;
+pub(crate) mod hatch;
 pub(crate) mod ray_cast;
 pub(crate) mod sight_lines;
 pub(crate) mod triangulate;

@@ -4,6 +4,7 @@ mod cli;
 mod drawings;
 mod empty;
 pub(crate) mod fill;
+mod hatch;
 mod hidden_levels;
 mod materials;
 mod mistakes;

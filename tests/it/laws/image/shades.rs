@@ -2,7 +2,9 @@
 
 use crate::laws::engines::{camera, mesh};
 use crate::scenes::{Model, orthographic};
+use glam::dvec3;
 use hiddenline::stages::model::scene::Scene;
+use hiddenline::stages::shading::light::LightSource;
 use hiddenline::stages::shading::preview::{PreviewOptions, Show, write};
 
 /// Columns and rows.
@@ -17,7 +19,7 @@ fn picture(model: Model, show: Show) -> impl Fn(f64, f64) -> [u8; 3] {
     let options = PreviewOptions {
         size: SIZE,
         show,
-        light: Some(glam::DVec3::Z),
+        light: Some(glam::DVec3::Z).into(),
         ..PreviewOptions::default()
     };
     let mut bytes = Vec::new();
@@ -43,6 +45,36 @@ fn what_is_nearer_is_lighter() {
     assert!(far < middle && middle < near && near > 230, "{far}, {middle}, {near}");
     // From white to a tenth, evenly.
     assert!((i32::from(middle) - 140).abs() < 8, "{middle}");
+}
+
+#[test]
+fn what_something_keeps_the_light_from_has_the_tone_of_the_shade() {
+    let mut model = Model::default();
+    model.face(&[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0], [0.0, 8.0, 0.0]]);
+    model.add_box([2.0, 2.0, 3.0], [4.0, 4.0, 4.0]);
+    let sight = orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+    let scene = model.seen_by("shades", sight);
+    let (built, camera) = (Scene::new(mesh(&scene)), camera(&scene));
+    for light in
+        [LightSource::From(dvec3(-1.0, 0.0, 1.0)), LightSource::At(dvec3(-40.0, 3.0, 43.0))]
+    {
+        let options = PreviewOptions { size: SIZE, show: Show::Tone, light, ..Default::default() };
+        let mut bytes = Vec::new();
+        write(&built, &camera, &options, None, &mut bytes).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        // The margin is a twenty-fifth of the side; world (x, y) from the lower left.
+        let at = |x: f64, y: f64| {
+            let pixel = |part: f64| (0.04 + 0.92 * part / 8.0) * f64::from(SIZE.0);
+            pixels[pixel(8.0 - y) as usize * SIZE.0 as usize + pixel(x) as usize]
+        };
+        // The box is seen at 2 to 4; its shadow falls from 5 to 8.
+        assert_eq!(at(6.0, 3.0), 64);
+        assert!(
+            at(3.0, 3.0) > 150 && at(1.0, 3.0) > 150 && at(6.0, 6.0) > 150 && at(4.6, 3.0) > 150
+        );
+    }
 }
 
 #[test]

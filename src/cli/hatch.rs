@@ -1,0 +1,232 @@
+//! Hatching: the options, and from them what is hatched.
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use hiddenline::stages::hatch::{
+    DEFAULT_BLACK, DEFAULT_HATCH_GAP_MM, DEFAULT_SMOOTH_DEG, DEFAULT_WHITE, Ground, HatchError,
+    HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows, LEVELS,
+};
+use hiddenline::stages::shading::light::{AMBIENT, LightError, LightSource};
+
+use super::{config, values};
+
+#[derive(Args)]
+#[command(next_help_heading = "Hatching")]
+pub(super) struct HatchArgs {
+    /// Hatch faces by the light: sections of the model (default), or straight lines on paper
+    #[arg(long, value_name = "METHOD", value_enum, num_args = 0..=1)]
+    #[arg(default_missing_value = "sections")]
+    hatch: Option<Method>,
+    /// Angles of the lines in degrees, a family for each; sections have them on faces toward the viewer
+    ///
+    /// The default is 45 for straight lines. Sections lean with the light unless there are angles.
+    #[arg(long, value_name = "DEG,…", value_delimiter = ',', value_parser = values::number)]
+    #[arg(allow_negative_numbers = true)]
+    hatch_angles: Vec<f64>,
+    /// Cross the lines by a second family where it is dark
+    #[arg(long, conflicts_with = "hatch_angles")]
+    hatch_cross: bool,
+    /// Normal of the planes that cut the sections
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "hatch_angles")]
+    hatch_normal: Option<DVec3>,
+    /// How lines thin out: halving, a number of levels from 2 to 6, or continuous
+    ///
+    ///   halving     every second line ends where half of the ink will do
+    ///   2 to 6      the same, with so many levels of darkness; for flat faces
+    ///   continuous  one line ends after the other
+    #[arg(long, value_name = "LEVELS", value_parser = levels, default_value = "halving")]
+    #[arg(verbatim_doc_comment)]
+    hatch_levels: HatchLevels,
+    /// Shadows to hatch [default: cast]
+    #[arg(long, value_enum)]
+    hatch_shadows: Option<Shadows>,
+    /// A plane below the model that takes its shadows, at Z or at its lowest point
+    #[arg(long, value_name = "Z", num_args = 0..=1, allow_negative_numbers = true)]
+    #[arg(default_missing_value = "lowest", value_parser = ground)]
+    ground: Option<Ground>,
+    /// White margin of the hatching beside nearer outlines
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    #[arg(default_value_t = DEFAULT_HATCH_GAP_MM)]
+    hatch_gap: f64,
+    /// Tones at least this light stay white, from 0 to 1
+    #[arg(long, value_name = "PART", value_parser = positive_part, default_value_t = DEFAULT_WHITE)]
+    hatch_white: f64,
+    /// How much of the paper the ink covers in the darkest places, from 0 to 1
+    #[arg(long, value_name = "PART", value_parser = positive_part, default_value_t = DEFAULT_BLACK)]
+    hatch_black: f64,
+    /// Tone of what no light reaches, from 0 to 1
+    #[arg(long, value_name = "PART", value_parser = values::part, default_value_t = AMBIENT)]
+    hatch_ambient: f64,
+    /// Shortest hatch stroke [default: 1, or three widths of the pen]
+    #[arg(long, value_name = "MM", value_parser = values::length)]
+    hatch_shortest: Option<f64>,
+    /// Shade faces that meet at this angle or less as one curved surface; 0 for flat faces
+    #[arg(long, value_name = "DEG", value_parser = values::crease)]
+    #[arg(default_value_t = DEFAULT_SMOOTH_DEG)]
+    hatch_smooth: f64,
+    /// Angle and darkness of one material: NAME=ANGLE:BLACK; can be given several times
+    #[arg(long = "hatch-material", value_name = "MATERIAL", value_parser = material)]
+    hatch_materials: Vec<HatchMaterial>,
+}
+
+/// The light, for commands that have none otherwise.
+#[derive(Args)]
+#[command(next_help_heading = "Hatching")]
+pub(super) struct LightArgs {
+    /// Where the light comes from, as a direction [default: over the viewer's left shoulder]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    light: Option<DVec3>,
+    /// Where the light is, as a point
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "light")]
+    light_at: Option<DVec3>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Method {
+    /// Parallel planes that cut the model: lines wrap its form
+    Sections,
+    /// Parallel lines on paper
+    Straight,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Shadows {
+    /// What faces away from the light, and what something keeps the light from
+    Cast,
+    /// Only what faces away from the light
+    Own,
+    /// None: tone falls off all around
+    None,
+    /// Nothing but shadows
+    Only,
+}
+
+impl LightArgs {
+    pub(super) fn source(&self) -> LightSource {
+        match (self.light, self.light_at) {
+            (_, Some(place)) => LightSource::At(place),
+            (Some(direction), None) => LightSource::From(direction),
+            (None, None) => LightSource::Shoulder,
+        }
+    }
+}
+
+impl HatchArgs {
+    /// What is hatched; `None` when nothing is.
+    pub(super) fn options(self, light: LightSource) -> Option<HatchOptions> {
+        let method = match self.hatch? {
+            Method::Sections => HatchMethod::Sections,
+            Method::Straight => HatchMethod::Straight,
+        };
+        Some(HatchOptions {
+            method,
+            light,
+            angles_deg: self.hatch_angles,
+            normal: self.hatch_normal,
+            cross: self.hatch_cross,
+            levels: self.hatch_levels,
+            white: self.hatch_white,
+            black: self.hatch_black,
+            ambient: self.hatch_ambient,
+            shortest_mm: self.hatch_shortest,
+            smooth_deg: self.hatch_smooth,
+            shadows: match self.hatch_shadows {
+                None | Some(Shadows::Cast) => HatchShadows::Cast,
+                Some(Shadows::Own) => HatchShadows::Own,
+                Some(Shadows::None) => HatchShadows::None,
+                Some(Shadows::Only) => HatchShadows::Only,
+            },
+            gap_mm: self.hatch_gap,
+            ground: self.ground,
+            materials: self.hatch_materials,
+        })
+    }
+
+    /// The plane that takes shadows.
+    pub(super) fn ground(&self) -> Option<Ground> {
+        self.ground
+    }
+
+    /// Warnings about what was typed but has no effect; `others` are options that only hatching uses, and
+    /// outlines of shadows, if there are any, which need the ground too.
+    pub(super) fn without_effect(&self, has_outlines: bool, others: &[&str]) -> Vec<String> {
+        let own = [
+            "--hatch-angles",
+            "--hatch-cross",
+            "--hatch-normal",
+            "--hatch-levels",
+            "--hatch-shadows",
+            "--hatch-gap",
+            "--hatch-white",
+            "--hatch-black",
+            "--hatch-ambient",
+            "--hatch-shortest",
+            "--hatch-smooth",
+            "--hatch-material",
+        ];
+        if self.hatch.is_none() {
+            let others = others.iter().chain(&["--ground"]).filter(|_| !has_outlines);
+            let typed = own.iter().chain(others).filter(|option| config::is_typed(option));
+            return typed.map(|option| format!("{option} has no effect without --hatch")).collect();
+        }
+        let takes_no_shadows = matches!(self.hatch_shadows, Some(Shadows::Own | Shadows::None));
+        let mut warnings = Vec::new();
+        if self.ground.is_some() && takes_no_shadows && !has_outlines {
+            warnings.push("--ground has no effect without cast shadows".to_owned());
+        }
+        if matches!(self.hatch, Some(Method::Straight)) && self.hatch_normal.is_some() {
+            warnings.push("--hatch-normal has no effect with --hatch straight".to_owned());
+        }
+        warnings
+    }
+}
+
+/// An error of hatching, with the options that mend it.
+pub(super) fn with_remedy(error: &HatchError) -> String {
+    match error {
+        HatchError::Light(LightError::Inside(..)) => {
+            format!("{error}; give --light-at a point outside, or --light a direction")
+        }
+        HatchError::Horizon => {
+            format!("{error}; give a --light with a positive z, or leave --ground out")
+        }
+        HatchError::TooMany(_) => {
+            format!("{error}: give a smaller --drawing-scale or a larger --pen-width")
+        }
+        _ => error.to_string(),
+    }
+}
+
+fn positive_part(text: &str) -> Result<f64, String> {
+    values::part(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("must be above 0".into()) })
+}
+
+fn levels(text: &str) -> Result<HatchLevels, String> {
+    match text.trim() {
+        "halving" => Ok(HatchLevels::Halving),
+        "continuous" => Ok(HatchLevels::Continuous),
+        number => {
+            let number = number.parse().ok().filter(|n| LEVELS.contains(n));
+            number.map(HatchLevels::Steps).ok_or_else(|| {
+                "give halving, continuous, or a number of levels from 2 to 6".to_owned()
+            })
+        }
+    }
+}
+
+fn ground(text: &str) -> Result<Ground, String> {
+    if text == "lowest" { Ok(Ground::Lowest) } else { values::number(text).map(Ground::At) }
+}
+
+/// A material as `brick=30:0.4`; angle or darkness may be left out.
+fn material(text: &str) -> Result<HatchMaterial, String> {
+    let example = || "give a material as in brick=30:0.4".to_owned();
+    let (name, how) = text.rsplit_once('=').ok_or_else(example)?;
+    let (angle, black) = how.split_once(':').unwrap_or((how, ""));
+    let given = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
+    let angle_deg = given(angle).map(|angle| values::number(&angle)).transpose()?;
+    let black = given(black).map(|black| positive_part(&black)).transpose()?;
+    Ok(HatchMaterial { name: name.to_owned(), angle_deg, black })
+}
