@@ -30,7 +30,7 @@ use crate::strokes::{HiddenLines, Strokes};
 pub use self::dash::Dash;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
 pub use self::pens::{
-    LayerControls, PenRole, PenRule, default_pen_color, with_hatch_pen, with_line_pens,
+    LayerControls, PenRole, PenRule, default_pen_color, idle_pens, with_hatch_pen, with_line_pens,
     with_underside_pen,
 };
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};

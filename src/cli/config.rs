@@ -278,6 +278,15 @@ pub(super) fn machine(name: &str) -> Result<OwnMachines, ConfigError> {
     Ok(machines)
 }
 
+/// The names of all presets.
+pub(super) fn presets() -> Result<Vec<String>, ConfigError> {
+    let files: Result<Vec<_>, ConfigError> = paths()
+        .into_iter()
+        .filter_map(|path| Some(read(&path).transpose()?.map(|file| (path, file))))
+        .collect();
+    Ok(preset_names(&files?).into_iter().map(str::to_owned).collect())
+}
+
 fn preset_names(files: &[(PathBuf, File)]) -> Vec<&str> {
     let names = files.iter().flat_map(|(_, file)| file.preset.keys().map(String::as_str));
     let mut names: Vec<&str> = names.collect();

@@ -90,13 +90,15 @@ pub(super) struct Job {
 }
 
 impl DrawArgs {
-    /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn job(self) -> Result<Job, Refused> {
+    /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
+    /// without effect.
+    pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
         let Self { model, camera, lines, hatch, light, page, output } = self;
         let files = model.files()?;
         let files = if lines.exact { files.with_equal_faces() } else { files };
         let files = files.in_unit(page.given_unit_mm());
         let mut output = output.options(lines.exact)?;
+        output.warnings.extend(idle);
         output.warnings.extend(lines.without_effect(&output.plotting));
         let has_outlines = lines.options().lines.contains(StrokeKind::Shadow);
         output.warnings.extend(hatch.without_effect(has_outlines, &["--light", "--light-at"]));

@@ -129,12 +129,14 @@ pub(super) struct Job {
 }
 
 impl FillArgs {
-    /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn job(self) -> Result<Job, Refused> {
+    /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
+    /// without effect.
+    pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
         let Self { input, camera, areas, edges, hatch, page, output } = self;
         let input = input.input(DEFAULT_SAMPLES)?.in_unit(page.given_unit_mm());
         let mut output = output.options(false)?;
         output.warnings.extend(hatch.without_effect(false, &[]));
+        output.warnings.extend(idle);
         if !output.format.has_fills() {
             let error = NoFills(output.format);
             return Err(

@@ -123,6 +123,15 @@ impl Machine {
     }
 }
 
+/// The names of all machines, those of the configuration files among them.
+pub(super) fn names() -> Result<Vec<String>, MachineError> {
+    let mut names: Vec<String> = Motion::NAMES.into_iter().map(str::to_owned).collect();
+    names.extend(hpgl::machines()?.iter().map(|plotter| plotter.name.clone()));
+    names.extend(gcode::GcodeProfile::names()?);
+    names.extend(config::machine("")?.names);
+    Ok(names)
+}
+
 /// How much ink was cut off, as the start of a message; `None` if all of it is there.
 pub(super) fn lost_ink(cropped: &Cropped) -> Option<String> {
     let dots = counted(cropped.lost_dots, "dot", "dots");

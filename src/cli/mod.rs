@@ -2,12 +2,14 @@
 
 mod camera;
 mod choice;
+mod completions;
 mod config;
 mod draw;
 mod file;
 mod fill;
 mod formulas;
 mod hatch;
+mod idle;
 mod input;
 mod machine;
 mod messages;
@@ -147,30 +149,28 @@ pub(crate) fn run() -> ExitCode {
         },
     };
     let typed = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let chosen = matches.subcommand();
+    let idle = chosen.map_or(Vec::new(), |(name, chosen)| idle::warnings(name, chosen));
     match typed.color {
         Color::Auto => {}
         Color::Always => anstream::ColorChoice::Always.write_global(),
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
     let result = match typed.command {
-        Command::Draw(args) => started("draw", args.job(), |job| draw::run(&job)),
-        Command::Surface(args) => started("surface", args.job(), |job| surface::run(&job)),
-        Command::Fill(args) => started("fill", args.job(), |job| fill::run(&job)),
-        Command::Preview(args) => started("preview", args.job(), |job| preview::run(&job)),
+        Command::Draw(args) => started("draw", args.job(idle), |job| draw::run(&job)),
+        Command::Surface(args) => started("surface", args.job(idle), |job| surface::run(&job)),
+        Command::Fill(args) => started("fill", args.job(idle), |job| fill::run(&job)),
+        Command::Preview(args) => started("preview", args.job(idle), |job| preview::run(&job)),
         #[cfg(feature = "view")]
         Command::View(args) => match matches.subcommand_matches("view") {
             Some(matches) => started("view", args.job(usage::command(), matches), view::run),
             None => Ok(()),
         },
-        Command::Optimize(args) => started("optimize", args.job(), |job| optimize::run(&job)),
+        Command::Optimize(args) => started("optimize", args.job(idle), |job| optimize::run(&job)),
         Command::Config { command: ConfigCommand::Show { preset } } => {
             config::show(preset.as_deref())
         }
-        Command::Completions { shell } => {
-            let mut script = Vec::new();
-            clap_complete::generate(shell, &mut usage::command(), "hiddenline", &mut script);
-            file::write_to_stdout(|out| out.write_all(&script)).map_err(Into::into)
-        }
+        Command::Completions { shell } => completions::print(shell),
         Command::Man { command } => man(command.as_deref()),
     };
     match result {

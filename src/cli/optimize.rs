@@ -96,9 +96,10 @@ pub(super) struct Job {
 }
 
 impl OptimizeArgs {
-    /// Checks what clap cannot.
-    pub(super) fn job(self) -> Result<Job, Refused> {
-        let output = self.output.options(false)?;
+    /// Checks what clap cannot; `idle` warns about options without effect.
+    pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
+        let mut output = self.output.options(false)?;
+        output.warnings.extend(idle);
         if output.format == Format::Json {
             return Err("JSON is for drawings of models; choose another format".into());
         }

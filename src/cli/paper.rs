@@ -11,7 +11,7 @@ use hiddenline::stages::optimize::estimate::PenWork;
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
 use hiddenline::stages::page::{Page, PageError, PageOptions, Placement, PlotOptions, crop_to};
 use hiddenline::stages::plot::Plot;
-use hiddenline::stages::strokes::Strokes;
+use hiddenline::stages::strokes::{HiddenLines, Strokes};
 use hiddenline::stages::timing::{Seconds, timed};
 use hiddenline::stages::write::dxf::DxfScale;
 use hiddenline::stages::write::png::PngError;
@@ -215,6 +215,11 @@ impl<'a> Run<'a> {
             return self.write(path, what, drawing.is_empty(), None, |out| {
                 json::write(drawing, camera, page.page_from_image, out).map(|()| Seconds::default())
             });
+        }
+        if !drawing.is_empty() {
+            let has_hidden = plot.hidden != HiddenLines::None;
+            let idle = self.output.plotting.idle_pens(drawing, has_hidden);
+            self.notes.warnings.extend(idle);
         }
         self.progress.stage("placing");
         let seconds = &mut self.stats.seconds.write;

@@ -7,11 +7,12 @@ use hiddenline::stages::optimize::estimate::{self, Motion, PenWork};
 use hiddenline::stages::optimize::{
     Effort, OptimizeOptions, Watch, optimize_watched, split_by_distance,
 };
-use hiddenline::stages::page::{LayerControls, PenRole, PenRule, default_pen_color};
+use hiddenline::stages::page::{LayerControls, PenRole, PenRule, default_pen_color, idle_pens};
 use hiddenline::stages::plot::{Pen, Plot};
-use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::strokes::{StrokeKind, Strokes};
 use hiddenline::stages::write::Format;
 
+use super::config;
 use super::machine::{Machine, MachineError};
 use super::stats::PlotStats;
 use super::values::{self, PenText};
@@ -160,6 +161,20 @@ impl Plotting {
     /// Whether hidden lines have pens.
     pub(super) fn has_hidden_pens(&self) -> bool {
         self.pens.iter().any(|pen| pen.drawn.is_hidden())
+    }
+
+    /// Warnings about pens that were typed and draw none of the strokes.
+    ///
+    /// Without hidden lines in the drawing, a warning about `--pen hidden=…` is given elsewhere.
+    pub(super) fn idle_pens(&self, strokes: &Strokes, has_hidden: bool) -> Vec<String> {
+        if !config::is_typed("--pen") {
+            return Vec::new();
+        }
+        let roles: Vec<PenRole> = self.pens.iter().map(|pen| pen.drawn).collect();
+        let idle = idle_pens(&roles, strokes).into_iter();
+        let idle = idle.filter(|role| has_hidden || !role.is_hidden());
+        idle.map(|role| format!("--pen {}=… draws nothing: no stroke is left for it", role.name()))
+            .collect()
     }
 
     /// Adds a pen like that of the visible lines for each kind of line that has none, if kinds are to

@@ -87,8 +87,9 @@ pub(super) struct Job {
 }
 
 impl PreviewArgs {
-    /// Checks what clap cannot; the error is a message about usage.
-    pub(super) fn job(self) -> Result<Job, Refused> {
+    /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
+    /// without effect.
+    pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
         let Self { input, camera, picture, output, threads, stats, quiet, preset: _ } = self;
         let input = input.input(DEFAULT_SAMPLES)?;
         let path = output.filter(|path| !is_dash(path));
@@ -101,7 +102,10 @@ impl PreviewArgs {
             options: picture.options()?,
             edges: picture.edges.then_some(picture.lines),
             engine: picture.engine_name(),
-            output: OutputOptions::picture(path, threads.map(usize::from), stats, quiet),
+            output: OutputOptions {
+                warnings: idle,
+                ..OutputOptions::picture(path, threads.map(usize::from), stats, quiet)
+            },
         })
     }
 }

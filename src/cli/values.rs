@@ -223,34 +223,20 @@ fn layer_controls(parts: &[&str]) -> Result<LayerControls, String> {
     Ok(controls)
 }
 
+/// What pens can be given for, with the first of the hidden levels.
+pub(super) fn pen_roles() -> impl Iterator<Item = PenRole> {
+    let hidden = [PenRole::Hidden, PenRole::HiddenLevel(1)];
+    let visible = [PenRole::Visible, PenRole::Outline, PenRole::Underside];
+    hidden.into_iter().chain(visible).chain(StrokeKind::ALL.map(PenRole::Kind))
+}
+
 fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
-    const KINDS: [StrokeKind; 14] = [
-        StrokeKind::Silhouette,
-        StrokeKind::Crease,
-        StrokeKind::Boundary,
-        StrokeKind::Nonmanifold,
-        StrokeKind::Intersection,
-        StrokeKind::Wire,
-        StrokeKind::Material,
-        StrokeKind::Mesh,
-        StrokeKind::Grid,
-        StrokeKind::Level,
-        StrokeKind::Axis,
-        StrokeKind::Text,
-        StrokeKind::Hatch,
-        StrokeKind::Shadow,
-    ];
     let level = name.strip_prefix("hidden").and_then(|level| level.parse().ok());
     if let Some(level @ 1..=99) = level {
         return Ok(PenRole::HiddenLevel(level));
     }
-    let all = || {
-        let hidden = [PenRole::Hidden, PenRole::HiddenLevel(1)];
-        let visible = [PenRole::Visible, PenRole::Outline, PenRole::Underside];
-        hidden.into_iter().chain(visible).chain(KINDS.map(PenRole::Kind))
-    };
-    all().find(|drawn| drawn.name() == name).ok_or_else(|| {
-        let names: Vec<_> = all().map(PenRole::name).collect();
+    pen_roles().find(|drawn| drawn.name() == name).ok_or_else(|| {
+        let names: Vec<_> = pen_roles().map(PenRole::name).collect();
         let names = names.iter().map(AsRef::as_ref);
         format!("no pen draws `{name}`{}", suggestion(name, names))
     })

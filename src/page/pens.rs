@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::classify::LineSelection;
 use crate::plot::{Layer, Pen, Polylines};
-use crate::strokes::{HiddenLines, Stroke, StrokeKind};
+use crate::strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
 
 use super::PlotOptions;
 
@@ -36,6 +36,20 @@ impl PenRole {
             Self::Underside => "underside".into(),
             Self::Kind(kind) => kind.name().into(),
         }
+    }
+
+    /// What draws a stroke, where there are rules for what `has_rule` is true for: the most special
+    /// one, and for visible strokes the outline before the underside before the kind.
+    fn of(stroke: &Stroke, has_rule: impl Fn(Self) -> bool) -> Self {
+        let specials = if stroke.qi > 0 {
+            [Some(Self::HiddenLevel(stroke.qi)), None, None]
+        } else {
+            let outline = stroke.outline.then_some(Self::Outline);
+            let underside = stroke.underside.then_some(Self::Underside);
+            [outline, underside, Some(Self::Kind(stroke.kind))]
+        };
+        let usual = if stroke.qi > 0 { Self::Hidden } else { Self::Visible };
+        specials.into_iter().flatten().find(|role| has_rule(*role)).unwrap_or(usual)
     }
 
     /// Whether it is about hidden strokes.
@@ -137,6 +151,20 @@ const UNDERSIDE_COLOR: &str = "#0000c0";
 /// The color of pen `number`, counted from 1, unless it is given another one.
 pub fn default_pen_color(number: u32) -> &'static str {
     PALETTE[number.saturating_sub(1) as usize % PALETTE.len()]
+}
+
+/// Those of `roles` that draw none of `strokes`, because there are none of that kind or because
+/// others of `roles` are more special.
+pub fn idle_pens(roles: &[PenRole], strokes: &Strokes) -> Vec<PenRole> {
+    let mut idle = roles.to_vec();
+    for stroke in strokes.iter() {
+        if idle.is_empty() {
+            break;
+        }
+        let role = PenRole::of(&stroke, |role| roles.contains(&role));
+        idle.retain(|other| *other != role);
+    }
+    idle
 }
 
 /// Adds the usual pens of a drawing of models to `rules`, unless these have some: one twice as wide
@@ -263,13 +291,9 @@ impl Holder {
     /// Where a stroke goes, if it goes anywhere.
     pub(super) fn lines(&mut self, stroke: &Stroke) -> &mut Polylines {
         let ruled = |drawn| self.rules.iter().rev().find(|rule| rule.0 == drawn).map(|rule| rule.1);
-        let layer = if stroke.qi > 0 {
-            ruled(PenRole::HiddenLevel(stroke.qi)).unwrap_or(self.hidden)
-        } else {
-            let outline = if stroke.outline { ruled(PenRole::Outline) } else { None };
-            let below = if stroke.underside { ruled(PenRole::Underside) } else { None };
-            outline.or(below).or_else(|| ruled(PenRole::Kind(stroke.kind))).unwrap_or(self.visible)
-        };
+        let role = PenRole::of(stroke, |role| ruled(role).is_some());
+        let usual = if role.is_hidden() { self.hidden } else { self.visible };
+        let layer = ruled(role).unwrap_or(usual);
         &mut self.layers[layer].lines
     }
 

@@ -88,7 +88,7 @@ pub enum SvgError {
     #[error("the file declares the unknown encoding {0:?}; save it as UTF-8")]
     Encoding(String),
     /// Not XML.
-    #[error("not a readable SVG: {0}")]
+    #[error("not a readable SVG: {}", on_one_line(.0))]
     Xml(#[from] roxmltree::Error),
     /// The root is another element.
     #[error("the root element is <{0}>, not <svg>")]
@@ -129,6 +129,13 @@ pub enum SvgError {
     /// The page has no size.
     #[error("the page has no positive width and height")]
     PageSize,
+}
+
+/// The parser quotes the character that it did not expect, which may break the line or the terminal.
+fn on_one_line(error: &roxmltree::Error) -> String {
+    let shown =
+        |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    error.to_string().chars().map(shown).collect()
 }
 
 /// A drawing that was read.

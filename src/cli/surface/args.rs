@@ -162,8 +162,9 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 }
 
 impl SurfaceArgs {
-    /// Checks what clap cannot; the error is a message about usage.
-    pub(in crate::cli) fn job(self) -> Result<Job, Refused> {
+    /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
+    /// without effect.
+    pub(in crate::cli) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
         let Self { surface, camera, lines, hatch, light, dressing, page, output } = self;
         let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
@@ -226,6 +227,7 @@ impl SurfaceArgs {
         }
         let view = camera.view_source();
         let mut output = output.options(lines.exact)?;
+        output.warnings.extend(idle);
         output.warnings.extend(hatch.without_effect(false, &["--light", "--light-at"]));
         let hatch = hatch.options(light.source());
         let inputs = sheets.file().into_iter().chain(view.input()).chain(output.inputs.clone());

@@ -314,10 +314,10 @@ impl Studio {
             Refused::Failed(error) => Fault::of(error.to_string()),
         };
         let job = if composed.name == DRAW {
-            let job = DrawArgs::from_arg_matches(&matches)?.job().map_err(refused)?;
+            let job = DrawArgs::from_arg_matches(&matches)?.job(Vec::new()).map_err(refused)?;
             Job::Draw(Box::new(job.holding(self.held.clone())))
         } else {
-            let job = SurfaceArgs::from_arg_matches(&matches)?.job().map_err(refused)?;
+            let job = SurfaceArgs::from_arg_matches(&matches)?.job(Vec::new()).map_err(refused)?;
             Job::Surface(Box::new(job))
         };
         Ok((job, output))

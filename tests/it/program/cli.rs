@@ -277,6 +277,23 @@ fn help_has_examples_and_completions_and_manual_are_printed() {
 }
 
 #[test]
+fn completions_know_machines_presets_and_pens() {
+    let (_keep, folder) = with_cube();
+    let settings = "[preset.thin-lines]\npen-width = 0.1\n[machine.attic]\nlike = 'hp7550'\n";
+    std::fs::write(folder.join("hiddenline.toml"), settings).unwrap();
+    // Scripts for elvish and PowerShell complete options, but no values.
+    for shell in ["bash", "zsh", "fish"] {
+        let script = text(&hiddenline(&folder, &["completions", shell]).stdout);
+        for name in ["hp7475a", "grbl-servo", "saxi", "attic", "thin-lines", "silhouette="] {
+            assert!(script.contains(name), "{shell} {name}");
+        }
+    }
+    // Other values than the known ones stay possible.
+    let run = hiddenline(&folder, &["draw", "cube.obj", "--pen", "visible=7:1mm", "-o", "x.svg"]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+}
+
+#[test]
 fn names_are_listed_in_the_help_and_suggested_for_others() {
     let (_keep, folder) = with_cube();
     let help = text(&hiddenline(&folder, &["draw", "-h"]).stdout);

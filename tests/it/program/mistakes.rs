@@ -305,6 +305,109 @@ fn options_without_effect_are_warned_of() {
 }
 
 #[test]
+fn what_other_options_make_useless_is_warned_of_and_changes_nothing() {
+    let (_keep, folder) = with_files();
+    let lines = "<svg xmlns='http://www.w3.org/2000/svg' width='90mm' height='50mm' \
+                 viewBox='0 0 90 50'><path d='M5 5H80V40' stroke='black' fill='none'/></svg>";
+    fs::write(folder.join("lines.svg"), lines).unwrap();
+    fs::write(folder.join("grid.csv"), "0,1,2\n1,3,1\n0,2,2\n").unwrap();
+    let draw = &["draw", "cube.obj"][..];
+    let top = &["draw", "cube.obj", "--view", "top"][..];
+    let exact = &["draw", "cube.obj", "--exact"][..];
+    let surface = &["surface", "x*y", "--samples", "9"][..];
+    let exact_surface = &["surface", "x*y", "--samples", "9", "--exact"][..];
+    let silhouette = &["draw", "cube.obj", "--lines", "silhouette"][..];
+    let levels = &["surface", "x*y", "--samples", "9", "--lines", "levels"][..];
+    let far = &["draw", "cube.obj", "--eye", "9,8,7"][..];
+    let bare = &["fill", "cube.obj", "--no-edges"][..];
+    let preview = &["preview", "cube.obj", "--size", "40x30"][..];
+    let depth = &["preview", "cube.obj", "--size", "40x30", "--show", "depth"][..];
+    let optimize = &["optimize", "lines.svg"][..];
+    let fit = &["optimize", "lines.svg", "--fit"][..];
+    for (command, option) in [
+        (silhouette, &["--crease", "20"][..]),
+        (draw, &["--unit", "m"]),
+        (top, &["--near", "0.1"]),
+        (top, &["--fov", "20"]),
+        (top, &["--distance", "50"]),
+        (far, &["--fov", "20"]),
+        (exact, &["--shortest-stroke", "5"]),
+        (exact, &["--simplify", "1"]),
+        (exact, &["--optimize", "best"]),
+        (exact_surface, &["--smoothness", "1"]),
+        (&["surface", "--grid", "grid.csv"], &["--smoothness", "1"]),
+        (surface, &["--u", "0:2"]),
+        (surface, &["--v", "0:2"]),
+        (levels, &["--every", "3"]),
+        (&["fill", "cube.obj", "--engine", "bsp"], &["--leaf", "3"]),
+        (&["fill", "cube.obj", "--engine", "octree"], &["--subdivision", "vertices"]),
+        (bare, &["--crease", "10"]),
+        (bare, &["--pen-width", "1"]),
+        (bare, &["--simplify", "1"]),
+        (preview, &["--edge-width", "3"]),
+        (preview, &["--smooth-angle", "20"]),
+        (depth, &["--shading", "smooth"]),
+        (depth, &["--light", "1,1,1"]),
+        (depth, &["--paint", "red"]),
+        (optimize, &["--margin", "10"]),
+        (fit, &["--center"]),
+    ] {
+        let end = if command[0] == "preview" { ".png" } else { ".svg" };
+        let made = |more: &[&str], name: &str| {
+            let name = format!("{name}{end}");
+            let stderr = told(&folder, &[command, more, &["-o", &name]].concat(), 0);
+            let bytes = fs::read(folder.join(name)).unwrap();
+            let text = String::from_utf8_lossy(&bytes).into_owned();
+            // The command line is part of an SVG.
+            let picture: Vec<String> = text.lines().map(str::to_owned).collect();
+            let of_lines = |line: &&String| !line.contains("hiddenline");
+            (stderr, picture.iter().filter(of_lines).cloned().collect::<Vec<_>>())
+        };
+        let (with, picture) = made(option, "with");
+        let message = format!("warning: {} has no effect", option[0]);
+        assert_eq!(with.matches(&message).count(), 1, "{command:?} {option:?}: {with}");
+        let (without, same) = made(&[], "without");
+        assert!(!without.contains("no effect"), "{command:?}: {without}");
+        assert!(picture == same, "{command:?} {option:?}");
+    }
+    for options in [
+        &["draw", "cube.obj", "--unit", "m", "--drawing-scale", "1:100"][..],
+        &["draw", "cube.obj", "--view", "top", "--projection", "perspective", "--fov", "20"],
+        &["draw", "cube.obj", "--eye", "9,8,7", "--fov", "60", "--fit-fov"],
+        &["draw", "cube.obj", "--crease", "20", "--lines", "silhouette,crease"],
+        &["surface", "--grid", "grid.csv", "--lines", "x,levels", "--every", "2"],
+        &["surface", "u", "v", "u*v", "--parametric", "--u", "0:2"],
+        &["fill", "cube.obj", "--crease", "10", "--pen-width", "1"],
+        &["optimize", "lines.svg", "--margin", "4", "--fit"],
+    ] {
+        let stderr = told(&folder, &[options, &["-o", "x.svg"]].concat(), 0);
+        assert!(!stderr.contains("no effect"), "{options:?}: {stderr}");
+    }
+}
+
+#[test]
+fn pens_that_draw_nothing_are_warned_of() {
+    let (_keep, folder) = with_files();
+    let drawn =
+        |more: &[&str]| told(&folder, &[&["draw", "cube.obj", "-o", "x.svg"], more].concat(), 0);
+    for pen in ["wire=2", "mesh=3", "underside=2", "outline=2"] {
+        let what = pen.split_once('=').unwrap().0;
+        let stderr = drawn(&["--pen", pen]);
+        assert!(stderr.contains(&format!("warning: --pen {what}=… draws nothing")), "{stderr}");
+    }
+    // A more special pen takes all of its strokes.
+    let pens = ["visible=1", "silhouette=2", "crease=3"];
+    let pens: Vec<&str> = pens.iter().flat_map(|pen| ["--pen", *pen]).collect();
+    assert!(drawn(&pens).contains("warning: --pen visible=… draws nothing"));
+    assert!(!drawn(&["--pen", "visible=1", "--pen", "crease=2"]).contains("warning"));
+    let strict = ["draw", "cube.obj", "--pen", "wire=2", "--strict", "-o", "never.svg"];
+    assert!(told(&folder, &strict, 1).contains("draws nothing"));
+    assert!(!folder.join("never.svg").exists());
+    fs::write(folder.join("hiddenline.toml"), "[defaults]\npen = ['wire=2']\n").unwrap();
+    assert!(!drawn(&[]).contains("warning"));
+}
+
+#[test]
 fn filling_tells_of_pens_only_where_there_are_lines_and_of_formats_that_it_has() {
     let (_keep, folder) = with_files();
     let areas = told(&folder, &["fill", "cube.obj", "--no-edges", "-o", "x.svg"], 0);

@@ -159,6 +159,14 @@ fn harmful_files_are_refused_in_words() {
 }
 
 #[test]
+fn errors_stay_on_one_line() {
+    for text in ["<svg/\n\n", "<svg>&\u{1b}[31m;</svg>", "<svg a=\n/>"] {
+        let error = read(text, &SvgOptions::default()).unwrap_err().to_string();
+        assert!(!error.chars().any(char::is_control), "{error:?}");
+    }
+}
+
+#[test]
 fn files_that_multiply_themselves_are_refused() {
     let entity =
         |name: char, of: char| format!("<!ENTITY {name} '{}'>", format!("&{of};").repeat(10));

@@ -1,0 +1,197 @@
+//! Warnings about options that were typed but change nothing.
+//!
+//! Only what was typed counts: a setting from a file, a preset or the environment is meant for many
+//! drawings, and need not matter to each of them.
+
+use clap::ArgMatches;
+
+use super::config;
+
+/// An option that other options can make useless.
+struct Rule {
+    /// Without its dashes, as in `crease`.
+    option: &'static str,
+    commands: &'static [&'static str],
+    is_idle: fn(&Choices) -> bool,
+    /// Follows "has no effect".
+    reason: &'static str,
+}
+
+const DRAWINGS: &[&str] = &["draw", "surface", "fill"];
+const SCENES: &[&str] = &["draw", "surface", "fill", "preview"];
+const MESHES: &[&str] = &["surface", "fill", "preview"];
+/// Options for strokes, which filled areas alone do not have.
+const FOR_STROKES: [&str; 11] = [
+    "lines",
+    "crease",
+    "pen-width",
+    "pen",
+    "optimize",
+    "simplify",
+    "join-tolerance",
+    "overlap-tolerance",
+    "split-distance",
+    "split-overlap",
+    "machine",
+];
+
+const RULES: &[Rule] = &[
+    Rule {
+        option: "crease",
+        commands: &["draw"],
+        is_idle: |c| c.is_given("lines") && !c.has("lines", &["crease", "all"]),
+        reason: "without crease among --lines",
+    },
+    Rule {
+        option: "unit",
+        commands: DRAWINGS,
+        is_idle: |c| !c.is_given("drawing-scale"),
+        reason: "without --drawing-scale",
+    },
+    Rule { option: "near", commands: SCENES, is_idle: |c| c.is_parallel(), reason: PARALLEL },
+    Rule { option: "fov", commands: SCENES, is_idle: |c| c.is_parallel(), reason: PARALLEL },
+    Rule {
+        option: "fov",
+        commands: SCENES,
+        is_idle: is_no_field_of_view,
+        reason: "without --fit-fov, where --eye or --distance places the camera",
+    },
+    Rule { option: "distance", commands: SCENES, is_idle: |c| c.is_parallel(), reason: PARALLEL },
+    Rule { option: "shortest-stroke", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "simplify", commands: &["draw", "surface"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "optimize", commands: &["draw", "surface"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "smoothness", commands: &["surface"], is_idle: is_exact, reason: EXACT },
+    Rule {
+        option: "smoothness",
+        commands: &["surface"],
+        is_idle: |c| c.is_given("grid") || c.is_given("points"),
+        reason: "on samples from a file; it is for formulas",
+    },
+    Rule { option: "u", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
+    Rule { option: "v", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
+    Rule {
+        option: "every",
+        commands: &["surface"],
+        is_idle: |c| c.is_given("lines") && !c.has("lines", &["x", "y", "both"]),
+        reason: "without x, y or both among --lines",
+    },
+    Rule {
+        option: "leaf",
+        commands: &["fill"],
+        is_idle: |c| !c.has("engine", &["auto", "warnock"]),
+        reason: "on this --engine; it is for warnock",
+    },
+    Rule {
+        option: "subdivision",
+        commands: &["fill"],
+        is_idle: |c| !c.has("engine", &["auto", "warnock"]),
+        reason: "on this --engine; it is for warnock",
+    },
+    Rule {
+        option: "edge-width",
+        commands: &["preview"],
+        is_idle: |c| !c.is_set("edges"),
+        reason: "without --edges",
+    },
+    Rule {
+        option: "smooth-angle",
+        commands: &["preview"],
+        is_idle: |c| !c.has("shading", &["smooth"]),
+        reason: "without --shading smooth",
+    },
+    Rule {
+        option: "shading",
+        commands: &["preview"],
+        is_idle: |c| c.has("show", &["depth"]),
+        reason: "on a picture of depths",
+    },
+    Rule { option: "light", commands: &["preview"], is_idle: is_data, reason: DATA },
+    Rule { option: "paint", commands: &["preview"], is_idle: is_data, reason: DATA },
+    Rule {
+        option: "margin",
+        commands: &["optimize"],
+        is_idle: |c| !c.is_set("fit") && !c.is_set("center") && !c.has("crop", &["margin"]),
+        reason: "without --fit, --center or --crop margin",
+    },
+    Rule {
+        option: "center",
+        commands: &["optimize"],
+        is_idle: |c| c.is_set("fit"),
+        reason: "with --fit, which centers the drawing, too",
+    },
+];
+
+const PARALLEL: &str = "on an orthographic projection";
+const EXACT: &str = "with --exact, which leaves lines as they are";
+const NO_PATCH: &str = "without --parametric";
+const DATA: &str = "on a picture of depths or normals";
+
+/// What was chosen for a command, typed or set.
+struct Choices<'a>(&'a ArgMatches);
+
+impl Choices<'_> {
+    /// Whether an option has a value that is not its default, or its default typed.
+    fn is_given(&self, option: &str) -> bool {
+        let id = option.replace('-', "_");
+        let has = self.0.try_contains_id(&id).unwrap_or(false);
+        has && self.0.value_source(&id) == Some(clap::parser::ValueSource::CommandLine)
+    }
+
+    /// Whether a flag is on.
+    fn is_set(&self, flag: &str) -> bool {
+        let id = flag.replace('-', "_");
+        self.0.try_get_one::<bool>(&id).ok().flatten().is_some_and(|on| *on)
+    }
+
+    /// Whether a value of an option, with commas between several, is one of `names`.
+    fn has(&self, option: &str, names: &[&str]) -> bool {
+        let id = option.replace('-', "_");
+        let values = self.0.try_get_raw(&id).ok().flatten().into_iter().flatten();
+        let mut names_in = values.filter_map(|value| value.to_str()).flat_map(|v| v.split(','));
+        names_in.any(|value| names.contains(&value))
+    }
+
+    fn is_parallel(&self) -> bool {
+        let is_perspective = self.has("projection", &["perspective"]);
+        self.has("projection", &["orthographic"]) || (self.is_given("view") && !is_perspective)
+    }
+}
+
+/// The field of view places an automatic camera, and nothing else.
+fn is_no_field_of_view(choices: &Choices) -> bool {
+    let is_placed = choices.is_given("eye") || choices.is_given("distance");
+    is_placed && !choices.is_parallel() && !choices.is_set("fit-fov")
+}
+
+fn is_exact(choices: &Choices) -> bool {
+    choices.is_set("exact")
+}
+
+fn is_no_patch(choices: &Choices) -> bool {
+    !choices.is_given("parametric")
+}
+
+fn is_data(choices: &Choices) -> bool {
+    choices.has("show", &["depth", "normals"])
+}
+
+/// Warnings about what was typed for a command but changes nothing.
+pub(super) fn warnings(command: &str, matches: &ArgMatches) -> Vec<String> {
+    let choices = Choices(matches);
+    let is_typed = |option: &str| config::is_typed(&format!("--{option}"));
+    let mut warnings = Vec::new();
+    let mut warn = |option: &str, reason: &str| {
+        if is_typed(option) {
+            warnings.push(format!("--{option} has no effect {reason}"));
+        }
+    };
+    for rule in RULES.iter().filter(|rule| rule.commands.contains(&command)) {
+        if (rule.is_idle)(&choices) {
+            warn(rule.option, rule.reason);
+        }
+    }
+    if command == "fill" && choices.is_set("no-edges") {
+        FOR_STROKES.iter().for_each(|option| warn(option, "with --no-edges"));
+    }
+    warnings
+}
