@@ -376,7 +376,7 @@ fn what_other_options_make_useless_is_warned_of_and_changes_nothing() {
         &["draw", "cube.obj", "--eye", "9,8,7", "--fov", "60", "--fit-fov"],
         &["draw", "cube.obj", "--crease", "20", "--lines", "silhouette,crease"],
         &["surface", "--grid", "grid.csv", "--lines", "x,levels", "--every", "2"],
-        &["surface", "u", "v", "u*v", "--parametric", "--u", "0:2"],
+        &["surface", "--parametric", "u", "v", "u*v", "--u", "0:2"],
         &["fill", "cube.obj", "--crease", "10", "--pen-width", "1"],
         &["optimize", "lines.svg", "--margin", "4", "--fit"],
     ] {
