@@ -19,7 +19,7 @@ use hiddenline::stages::engines::image::{self, PixelMap, Raster};
 use hiddenline::stages::model::mesh::Mesh;
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::model::topology::Topology;
-use hiddenline::stages::page::{Dash, Page, PageOptions, PlotOptions};
+use hiddenline::stages::page::{Page, PageOptions, PlotOptions};
 use hiddenline::stages::read::{ModelFormat, read_bytes};
 use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::strokes::StrokeKind;
@@ -152,7 +152,7 @@ fn g_write_svg_of_all_edges(bencher: Bencher, n: u32) {
             pen_width_mm: 0.3,
             pens: Vec::new(),
             hidden: HiddenLines::None,
-            dash: Dash::default(),
+            dash: None,
             keep_dashes_whole: false,
             title: String::new(),
             source: String::new(),

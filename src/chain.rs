@@ -15,9 +15,12 @@
 pub mod grid_lines;
 mod pen_path;
 
+use crate::camera::{ImagePoint, Projection};
 use crate::classify::ViewedScene;
 use crate::engines::edge::outline::Outline;
 use crate::engines::visibility::{Span, Visibility};
+use crate::links::{FREE, for_each_trail};
+use crate::strokes::draft::{Draft, DraftPoint, Mark};
 use crate::strokes::{StrokeKind, Strokes};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -41,13 +44,23 @@ pub struct ChainOptions {
     pub shortest: f64,
 }
 
+impl ChainOptions {
+    /// Segments of a draft of one class may be one stroke.
+    pub fn class(&self, mark: Mark) -> (u32, u32) {
+        class(mark.kind, mark.qi, mark.outline, self)
+    }
+}
+
 /// A part of a line that is drawn.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     kind: StrokeKind,
     qi: u32,
     outline: bool,
+    only_outline: bool,
     points: [DVec2; 2],
+    /// Pseudo-depth at each end; see [`DraftPoint::depth`].
+    depths: [f64; 2],
     /// The mesh's vertex at each end, or [`FREE`] where a cut ends the piece.
     ends: [u32; 2],
 }
@@ -55,9 +68,6 @@ struct Piece {
 /// Two cuts at one place, each within `2⁻³⁶` of it, are no further apart than this as parameters of
 /// their edge: what lies between them is rounding.
 const SAME_CUT: f64 = 1.0 / (1u64 << 35) as f64;
-
-/// Marks the end of a piece that no other can join.
-const FREE: u32 = u32::MAX;
 
 /// Turns the spans of all drawn edges into strokes, in the order of the edges.
 ///
@@ -90,7 +100,11 @@ pub fn chain(
         });
     }
     let is_apart = options.apart_by_kind || options.hidden_levels.is_some() || outline.is_some();
-    let links = if is_apart { link(&pieces, |piece| class(piece, options)) } else { links };
+    let links = if is_apart {
+        link(&pieces, |piece| class(piece.kind, piece.qi, piece.outline, options))
+    } else {
+        links
+    };
     for_each_trail(&links, |trail| {
         let first = &pieces[trail[0] as usize / 2];
         if !is_short[trail[0] as usize / 2] {
@@ -99,6 +113,32 @@ pub fn chain(
         }
     });
     drawing
+}
+
+/// Turns the spans of all drawn edges into drafts of the visible and of the hidden lines: pieces are
+/// joined whatever their kind, and nothing is dropped.
+///
+/// Pieces that are drawn only where they are outline are all there, since only the paper will tell.
+/// Where hidden lines are told apart by `qi`, pieces of different `qi` are not joined. The other options
+/// are those of [`chain`]; `exact` must be off.
+pub fn draft(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -> [Draft; 2] {
+    let pieces = pieces(view, visibility, None, options);
+    let has_levels = options.hidden_levels.is_some() || options.apart_by_kind;
+    let level = |piece: &Piece| (0, if has_levels { piece.qi } else { piece.qi.min(1) });
+    let mut drafts = [Draft::default(), Draft::default()];
+    for_each_trail(&link(&pieces, level), |trail| {
+        let draft = &mut drafts[usize::from(pieces[trail[0] as usize / 2].qi > 0)];
+        for &end in trail {
+            let Piece { kind, qi, outline, only_outline, points, depths, .. } =
+                pieces[end as usize / 2];
+            let mark = Mark { kind, qi, outline, only_outline };
+            for side in [end as usize % 2, 1 - end as usize % 2] {
+                draft.push(DraftPoint { at: points[side], depth: depths[side], mark });
+            }
+        }
+        draft.end_stroke();
+    });
+    drafts
 }
 
 fn push(drawing: &mut Strokes, first: &Piece, points: &[DVec2]) {
@@ -110,38 +150,11 @@ fn push(drawing: &mut Strokes, first: &Piece, points: &[DVec2]) {
 }
 
 /// Pieces of one class may join.
-fn class(piece: &Piece, options: &ChainOptions) -> (u32, u32) {
-    let kind = if options.apart_by_kind { piece.kind as u32 } else { 0 };
+fn class(kind: StrokeKind, qi: u32, outline: bool, options: &ChainOptions) -> (u32, u32) {
+    let kind = if options.apart_by_kind { kind as u32 } else { 0 };
     let levels_apart = options.apart_by_kind || options.hidden_levels.is_some();
-    let qi = if levels_apart { piece.qi } else { piece.qi.min(1) };
-    (kind << 1 | u32::from(piece.outline), qi)
-}
-
-/// Calls `f` with each trail of joined pieces, as the ends at which they are entered. `links` has, for
-/// each end of each piece (numbered `2 · piece + side`), the end that it is joined to, or `u32::MAX`.
-pub(crate) fn for_each_trail(links: &[u32], mut f: impl FnMut(&[u32])) {
-    let mut is_drawn = vec![false; links.len() / 2];
-    let mut trail = Vec::new();
-    // Trails with loose ends first, from the end that comes first; then closed ones.
-    for closed in [false, true] {
-        for start in 0..links.len() as u32 {
-            let is_loose = links[start as usize] == FREE;
-            if is_drawn[start as usize / 2] || !(closed || is_loose) {
-                continue;
-            }
-            trail.clear();
-            let mut end = start;
-            loop {
-                is_drawn[end as usize / 2] = true;
-                trail.push(end);
-                end = links[(end ^ 1) as usize];
-                if end == FREE || is_drawn[end as usize / 2] {
-                    break;
-                }
-            }
-            f(&trail);
-        }
-    }
+    let qi = if levels_apart { qi } else { qi.min(1) };
+    (kind << 1 | u32::from(outline), qi)
 }
 
 /// The points of a trail.
@@ -175,6 +188,9 @@ fn pieces(
     options: &ChainOptions,
 ) -> Vec<Piece> {
     const CHUNK: usize = 4096;
+    let is_perspective = matches!(view.camera().projection(), Projection::Perspective { .. });
+    // Larger farther away, and affine along lines in the image.
+    let depth = |p: ImagePoint| if is_perspective { -1.0 / p.depth } else { p.depth };
     let parts: Vec<Vec<Piece>> = view
         .selected()
         .par_chunks(CHUNK)
@@ -186,16 +202,17 @@ fn pieces(
             for (i, drawn) in drawn.iter().enumerate() {
                 let ends = view.line(drawn.edge);
                 let images = ends.map(|end| view.image()[end as usize]);
-                let at = |t: f64| {
+                let point = |t: f64| {
                     // Ends are taken as they are, so that joined pieces share the very point.
                     if t == 0.0 {
-                        images[0].image()
+                        images[0]
                     } else if t == 1.0 {
-                        images[1].image()
+                        images[1]
                     } else {
-                        images[0].towards(images[1], t).image()
+                        images[0].towards(images[1], t)
                     }
                 };
+                let at = |t: f64| point(t).image();
                 spans.clear();
                 spans.extend_from_slice(visibility.spans(chunk * CHUNK + i));
                 parts.clear();
@@ -210,21 +227,24 @@ fn pieces(
                     });
                 }
                 merge(&mut spans, options);
-                let only_outline = outline.is_some() && view.is_only_outline(drawn.edge);
+                let only_outline = view.is_only_outline(drawn.edge);
+                let leaves_out_rest = only_outline && outline.is_some();
                 let kept = spans.iter().filter(|span| {
                     span.qi == 0 || options.hidden && span.qi <= deepest && !only_outline
                 });
                 for span in kept.filter(|span| options.exact || !span.doubled) {
                     let parts = if span.qi == 0 { &parts[..] } else { &[] };
                     split(span, parts, |t0, t1, outline| {
-                        if only_outline && !outline {
+                        if leaves_out_rest && !outline {
                             return;
                         }
                         pieces.push(Piece {
                             kind: drawn.kind,
                             qi: span.qi,
                             outline,
+                            only_outline,
                             points: [at(t0), at(t1)],
+                            depths: [t0, t1].map(|t| depth(point(t))),
                             ends: [
                                 if t0 == 0.0 { ends[0] } else { FREE },
                                 if t1 == 1.0 { ends[1] } else { FREE },

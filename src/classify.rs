@@ -21,7 +21,8 @@
 //! flipped for the comparison, so kinds do not depend on the winding.
 
 use crate::camera::{Camera, ImagePoint};
-use crate::model::scene::{Dihedral, LineSource, Scene};
+use crate::model::creases::CreaseAngle;
+use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
 use crate::predicates::{PiercePoint, Sight, Sign, exact};
 use crate::strokes::StrokeKind;
@@ -219,7 +220,7 @@ impl<'a> ViewedScene<'a> {
     /// An edge is selected by any kind that applies to it, and gets the first that does. Edges whose
     /// image is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
-        Self::with(scene, camera, lines, crease_deg, true, None)
+        Self::with(scene, camera, lines, CreaseRule::above(crease_deg), true, None)
     }
 
     /// The same for the faces exactly as given: bends and flush edges that the scene knows make no
@@ -230,7 +231,18 @@ impl<'a> ViewedScene<'a> {
         lines: LineSelection,
         crease_deg: f64,
     ) -> Self {
-        Self::with(scene, camera, lines, crease_deg, false, None)
+        Self::with(scene, camera, lines, CreaseRule::above(crease_deg), false, None)
+    }
+
+    /// The same as [`new`](Self::new) where `is_crease` says for each edge of the scene whether it is a
+    /// crease, as [`CreaseChains`](crate::model::creases::CreaseChains) do.
+    pub fn with_creases(
+        scene: &'a Scene,
+        camera: &Camera,
+        lines: LineSelection,
+        is_crease: &[bool],
+    ) -> Self {
+        Self::with(scene, camera, lines, CreaseRule::Chosen(is_crease), true, None)
     }
 
     /// The same with additional segments, all of which are drawn. They are numbered after the lines of
@@ -242,14 +254,14 @@ impl<'a> ViewedScene<'a> {
         crease_deg: f64,
         segments: &'a ViewSegments,
     ) -> Self {
-        Self::with(scene, camera, lines, crease_deg, true, Some(segments))
+        Self::with(scene, camera, lines, CreaseRule::above(crease_deg), true, Some(segments))
     }
 
     fn with(
         scene: &'a Scene,
         camera: &Camera,
         lines: LineSelection,
-        crease_deg: f64,
+        rule: CreaseRule,
         is_tidied: bool,
         own: Option<&'a ViewSegments>,
     ) -> Self {
@@ -291,7 +303,7 @@ impl<'a> ViewedScene<'a> {
             is_tidied,
             own,
         };
-        let selected = view.select(lines, crease_deg);
+        let selected = view.select(lines, rule);
         let only_outline = selected.iter().filter(|(_, is_whole)| !is_whole);
         view.only_outline = only_outline.map(|(drawn, _)| drawn.edge).collect();
         view.drawn = selected.into_iter().map(|(drawn, _)| drawn).collect();
@@ -404,9 +416,9 @@ impl<'a> ViewedScene<'a> {
     }
 
     /// The edges to draw, each with whether all of it is drawn and not only the outline.
-    fn select(&self, lines: LineSelection, crease_deg: f64) -> Vec<(SelectedLine, bool)> {
+    fn select(&self, lines: LineSelection, rule: CreaseRule) -> Vec<(SelectedLine, bool)> {
         let n_edges = self.scene.topology().edges().len() as u32;
-        let creases = Creases::new(self.scene, lines, crease_deg);
+        let creases = Creases::new(self.scene, lines, rule);
         let of_outline = LineSelection::NONE
             .with(StrokeKind::Silhouette)
             .with(StrokeKind::Boundary)
@@ -534,10 +546,7 @@ impl<'a> ViewedScene<'a> {
         let against = first.runs_upwards() == second.runs_upwards();
         let [facing, other] = faces.map(|face| self.facing_along(face, edge));
         let other = if against { other.flipped() } else { other };
-        let is_crease = || {
-            let uncertain = || self.angle(faces, against) > self.angle_limit(edge, faces, creases);
-            creases.has(edge) && (creases.surely_has(edge) || uncertain())
-        };
+        let is_crease = || creases.has(edge);
         if (facing == Sign::Positive) != (other == Sign::Positive) {
             let by_crease = || lines.contains(StrokeKind::Crease) && is_crease();
             let by_name = every || lines.contains(StrokeKind::Silhouette);
@@ -555,64 +564,41 @@ impl<'a> ViewedScene<'a> {
             (false, false) => chosen(StrokeKind::Mesh),
         }
     }
-
-    /// The angle between the normals of two faces, in radians; of the second one turned over if they
-    /// are wound against each other.
-    fn angle(&self, faces: [u32; 2], against: bool) -> f64 {
-        let [a, b] = faces.map(|face| self.scene.normals()[face as usize]);
-        libm::atan2(a.cross(b).length(), if against { -a.dot(b) } else { a.dot(b) })
-    }
-
-    /// The largest angle at an edge that counts as equal to the crease angle, in radians.
-    ///
-    /// Angles that differ only because corners were rounded are treated alike, so the sides of a regular
-    /// prism are all creases or none. An angle is uncertain by about the uncertainty of the corners
-    /// over the height of each face above the edge.
-    fn angle_limit(&self, edge: u32, faces: [u32; 2], creases: &Creases) -> f64 {
-        let mesh = self.scene.mesh();
-        let at = |vertex: u32| mesh.positions()[vertex as usize];
-        let [from, to] = self.scene.topology().edge(edge).map(at);
-        let along = (to - from).normalize_or_zero();
-        let heights = faces.map(|face| {
-            let height = |&corner: &u32| (at(corner) - from).cross(along).length();
-            mesh.face(face).iter().map(height).fold(0.0, f64::max)
-        });
-        let tolerance = mesh.coordinate_error() * (1.0 / heights[0] + 1.0 / heights[1]);
-        creases.angle + tolerance.min(MOST_ANGLE_TOLERANCE_DEG.to_radians())
-    }
 }
-
-/// Angles may be this much above the threshold, at most, and still count as equal to it.
-const MOST_ANGLE_TOLERANCE_DEG: f64 = 0.5;
 
 /// What is needed to find creases and borders of materials, if they are drawn.
 struct Creases<'a> {
-    /// The crease angle, in radians.
-    angle: f64,
-    /// Its cosine.
-    cosine: f64,
-    /// Of each edge, or empty.
-    dihedrals: &'a [Dihedral],
-    /// The cosine of the largest angle that may count as equal to the threshold.
-    sure_cosine: f64,
+    scene: &'a Scene,
+    rule: CreaseRule<'a>,
     /// For each face a number that faces of equal group and material share, or empty.
     groups: &'a [u32],
 }
 
+/// Which edges are creases.
+#[derive(Debug, Clone, Copy)]
+enum CreaseRule<'a> {
+    Above(CreaseAngle),
+    Chosen(&'a [bool]),
+}
+
+impl CreaseRule<'_> {
+    fn above(crease_deg: f64) -> Self {
+        Self::Above(CreaseAngle::from_degrees(crease_deg))
+    }
+}
+
 impl<'a> Creases<'a> {
-    fn new(scene: &'a Scene, lines: LineSelection, crease_deg: f64) -> Self {
+    fn new(scene: &'a Scene, lines: LineSelection, rule: CreaseRule<'a>) -> Self {
         let has_materials = lines.contains(StrokeKind::Material);
-        let has_creases =
-            has_materials || lines.contains(StrokeKind::Crease) || lines.contains(StrokeKind::Mesh);
-        let angle = crease_deg.clamp(0.0, 180.0).to_radians();
-        let sure = (angle + MOST_ANGLE_TOLERANCE_DEG.to_radians()).min(std::f64::consts::PI);
-        Self {
-            angle,
-            cosine: libm::cos(angle),
-            sure_cosine: libm::cos(sure),
-            dihedrals: if has_creases { scene.dihedrals() } else { &[] },
-            groups: if has_materials { scene.groups() } else { &[] },
+        let is_measured = matches!(rule, CreaseRule::Above(_))
+            && (has_materials
+                || lines.contains(StrokeKind::Crease)
+                || lines.contains(StrokeKind::Mesh));
+        if is_measured {
+            // Once, before many threads ask.
+            scene.dihedrals();
         }
+        Self { scene, rule, groups: if has_materials { scene.groups() } else { &[] } }
     }
 
     /// Whether the faces along an edge are not all of one group and material.
@@ -621,13 +607,10 @@ impl<'a> Creases<'a> {
         uses.windows(2).any(|pair| group(&pair[0]) != group(&pair[1]))
     }
 
-    /// Whether the two faces at an edge meet at more than the crease angle.
     fn has(&self, edge: u32) -> bool {
-        self.dihedrals.get(edge as usize).is_some_and(|angle| angle.is_above(self.cosine))
-    }
-
-    /// Whether they do so by more than rounding could cause.
-    fn surely_has(&self, edge: u32) -> bool {
-        self.dihedrals.get(edge as usize).is_some_and(|angle| angle.is_above(self.sure_cosine))
+        match self.rule {
+            CreaseRule::Above(angle) => angle.is_exceeded(self.scene, edge),
+            CreaseRule::Chosen(is_crease) => is_crease[edge as usize],
+        }
     }
 }

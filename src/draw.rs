@@ -5,11 +5,14 @@ pub mod meshed;
 pub mod surface;
 
 use crate::camera::Camera;
-use crate::chain::{ChainOptions, chain};
+use crate::chain::{ChainOptions, chain, draft};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
+use crate::drafting::{Drafted, DraftingOptions, finish};
 use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, outline, solve};
+use crate::model::creases::{CreaseChains, looseness};
 use crate::model::scene::Scene;
-use crate::strokes::{HiddenLines, Strokes};
+use crate::page::DEFAULT_PEN_WIDTH_MM;
+use crate::strokes::{HiddenLines, StrokeKind, Strokes};
 use crate::timing::{Seconds, timed};
 
 /// The default contact tolerance as a fraction of the largest coordinate: twice the spacing of
@@ -26,6 +29,10 @@ pub const LEAST_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 /// The default shortest stroke in millimeters on paper: a little less than the width of a pen, which
 /// makes a dot of that size anyway.
 pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.25;
+
+/// The usual distance between lines that are thinned, in widths of the pen: it leaves half a pen's width
+/// of paper between them.
+pub const DEFAULT_THIN: f64 = 1.5;
 
 /// What to draw, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +61,20 @@ pub struct DrawOptions {
     /// Join only pieces of one kind and one `qi`, so that a stroke's attributes apply to all of it.
     /// Otherwise everything that one pen draws is joined.
     pub apart_by_kind: bool,
+    /// Width of the pen in millimeters: what is nearer than that cannot be told apart on paper. Zero
+    /// leaves strokes as they are chained.
+    pub pen_width_mm: f64,
+    /// Draw ink once where it lies on other ink: visible over hidden lines, and more important over
+    /// less important ones. Otherwise only lines with exactly the same image are drawn once.
+    pub drops_overlaps: bool,
+    /// How close ink lies on other ink, in millimeters; `None` for half the pen's width.
+    pub overlap_mm: Option<f64>,
+    /// Least distance between the middles of lines that run beside each other, in millimeters: where
+    /// there is less, the less important one ends. `None` for any distance.
+    pub thin_mm: Option<f64>,
+    /// How far lines stop short of nearer silhouettes, borders and wires, in millimeters, measured
+    /// across these. Zero for not at all.
+    pub halo_mm: f64,
 }
 
 impl Default for DrawOptions {
@@ -68,6 +89,11 @@ impl Default for DrawOptions {
             contact_tolerance: None,
             shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
             apart_by_kind: false,
+            pen_width_mm: DEFAULT_PEN_WIDTH_MM,
+            drops_overlaps: true,
+            overlap_mm: None,
+            thin_mm: None,
+            halo_mm: 0.0,
         }
     }
 }
@@ -166,6 +192,8 @@ pub struct DrawOutput {
     pub counts: LineCounts,
     /// How many decisions the floating-point filters left to exact arithmetic.
     pub n_exact: u64,
+    /// What was joined and left out on paper.
+    pub drafted: Drafted,
     /// Wall time of classification, visibility and strokes; the rest is zero.
     pub seconds: Seconds,
 }
@@ -211,15 +239,10 @@ impl MeshSize {
 /// the image; where that is zero it does not matter.
 pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: f64) -> DrawOutput {
     let mut seconds = Seconds::default();
-    let view = timed(&mut seconds.classify, || {
-        let of_view = if options.exact { ViewedScene::as_given } else { ViewedScene::new };
-        of_view(scene, camera, options.lines, options.crease_deg)
-    });
+    let view = timed(&mut seconds.classify, || view(scene, camera, options, mm_per_unit));
     let (visibility, counts, engine) =
         timed(&mut seconds.visibility, || solve(&view, options.engine, &options.visibility(scene)));
-    let outline = timed(&mut seconds.visibility, || {
-        options.lines.has_outline().then(|| outline::find(&view))
-    });
+    let (n_lines, n_exact) = (view.selected().len(), view.sight().n_exact());
     let chaining = ChainOptions {
         hidden: options.hidden != HiddenLines::None,
         hidden_levels: options.hidden_levels,
@@ -227,8 +250,52 @@ pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: 
         apart_by_kind: options.apart_by_kind,
         shortest: if options.exact { 0.0 } else { options.shortest_stroke_mm / mm_per_unit },
     };
-    let drawing =
-        timed(&mut seconds.strokes, || chain(&view, &visibility, outline.as_ref(), &chaining));
-    let (n_lines, n_exact) = (view.selected().len(), view.sight().n_exact());
-    DrawOutput { drawing, engine, n_lines, counts, n_exact, seconds }
+    if options.exact || options.pen_width_mm <= 0.0 {
+        let outline = timed(&mut seconds.visibility, || {
+            options.lines.has_outline().then(|| outline::find(&view))
+        });
+        let drawing =
+            timed(&mut seconds.strokes, || chain(&view, &visibility, outline.as_ref(), &chaining));
+        let drafted = Drafted::default();
+        return DrawOutput { drawing, engine, n_lines, counts, n_exact, drafted, seconds };
+    }
+    let drafts = timed(&mut seconds.strokes, || draft(&view, &visibility, &chaining));
+    let (draft, drafted) = timed(&mut seconds.drafting, || {
+        let drafting = DraftingOptions {
+            pen_width_mm: options.pen_width_mm,
+            shortest_stroke_mm: options.shortest_stroke_mm,
+            outline: options.lines.has_outline(),
+            overlap_mm: options
+                .drops_overlaps
+                .then_some(options.overlap_mm.unwrap_or(0.5 * options.pen_width_mm)),
+            thin_mm: options.thin_mm,
+            halo_mm: options.halo_mm,
+            usual_thin_mm: DEFAULT_THIN * options.pen_width_mm,
+            mm_per_unit,
+        };
+        finish(&view, drafts, &drafting)
+    });
+    let drawing = timed(&mut seconds.strokes, || draft.into_strokes(|mark| chaining.class(mark)));
+    DrawOutput { drawing, engine, n_lines, counts, n_exact, drafted, seconds }
+}
+
+/// What a camera sees of a scene, with the lines to draw.
+fn view<'a>(
+    scene: &'a Scene,
+    camera: &Camera,
+    options: &DrawOptions,
+    mm_per_unit: f64,
+) -> ViewedScene<'a> {
+    let (lines, crease_deg) = (options.lines, options.crease_deg);
+    let is_by_chains =
+        !options.exact && lines.contains(StrokeKind::Crease) && !looseness(scene).is_constructed();
+    if options.exact {
+        return ViewedScene::as_given(scene, camera, lines, crease_deg);
+    }
+    if !is_by_chains {
+        return ViewedScene::new(scene, camera, lines, crease_deg);
+    }
+    let chains = CreaseChains::new(scene, crease_deg);
+    let is_crease = chains.of_view(scene, camera, mm_per_unit);
+    ViewedScene::with_creases(scene, camera, lines, &is_crease)
 }

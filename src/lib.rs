@@ -78,6 +78,8 @@
 //!       │   lines       quantitative        │      │
 //!       │               invisibility        │      │
 //!       │                    └──► chain ◄───┼──────┘
+//!       │                          ▼        │
+//!       │                       drafting: the lines a draughtsman would draw
 //!       ├─► engines::face          ▼        │
 //!       │   visible areas  strokes: polylines in the image ◄─ axes
 //!       ▼        │                 │        │
@@ -124,6 +126,8 @@ pub mod stages {
 
     pub mod extent;
 
+    pub mod links;
+
     pub mod model;
 
     pub mod read;
@@ -137,6 +141,8 @@ pub mod stages {
     pub mod engines;
 
     pub mod chain;
+
+    pub mod drafting;
 
     pub mod axes;
 
@@ -161,8 +167,8 @@ pub mod stages {
 }
 
 use stages::{
-    api, axes, camera, chain, classify, draw, engines, extent, hatch, model, optimize, page, plot,
-    predicates, read, shading, strokes, surface, timing, write,
+    api, axes, camera, chain, classify, drafting, draw, engines, extent, hatch, links, model,
+    optimize, page, plot, predicates, read, shading, strokes, surface, timing, write,
 };
 
 // Points and vectors, as this crate uses them.

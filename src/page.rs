@@ -28,10 +28,11 @@ use crate::plot::{FillLayer, Layer, Pen, Plot};
 use crate::strokes::{HiddenLines, Strokes};
 
 pub use self::dash::Dash;
+use self::dash::VisibleEnds;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
 pub use self::pens::{
-    LayerControls, PenRole, PenRule, default_pen_color, idle_pens, with_hatch_pen, with_line_pens,
-    with_underside_pen,
+    LayerControls, LineWeights, PenRole, PenRule, default_pen_color, idle_pens, with_hatch_pen,
+    with_line_pens, with_underside_pen,
 };
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 
@@ -195,8 +196,8 @@ pub struct PlotOptions {
     pub pens: Vec<PenRule>,
     /// Hidden lines: none, dashed, or solid.
     pub hidden: HiddenLines,
-    /// Lengths of dashes and gaps.
-    pub dash: Dash,
+    /// Lengths of dashes and gaps; `None` for those that suit each pen's width.
+    pub dash: Option<Dash>,
     /// Whether dashed lines stay whole, on layers that name the pattern, for a format that draws it.
     pub keep_dashes_whole: bool,
     /// What the drawing shows.
@@ -211,7 +212,7 @@ impl Default for PlotOptions {
             pen_width_mm: DEFAULT_PEN_WIDTH_MM,
             pens: Vec::new(),
             hidden: HiddenLines::default(),
-            dash: Dash::default(),
+            dash: None,
             keep_dashes_whole: false,
             title: String::new(),
             source: String::new(),
@@ -321,19 +322,31 @@ impl Page {
         let mut holder = pens::Holder::new(&options);
         let mut cropped = false;
         let mut on_page = Vec::new();
-        for stroke in drawing.iter() {
-            if stroke.qi > 0 && options.hidden == HiddenLines::None {
-                continue;
-            }
+        let is_drawn = |qi| qi == 0 || options.hidden != HiddenLines::None;
+        let is_dashed =
+            |qi| qi > 0 && options.hidden == HiddenLines::Dashed && !options.keep_dashes_whole;
+        let place = |points: &[DVec2], on_page: &mut Vec<DVec2>| {
             on_page.clear();
-            on_page.extend(stroke.points.iter().map(|&p| self.page_from_image.transform_point2(p)));
-            let dashed = stroke.qi > 0
-                && options.hidden == HiddenLines::Dashed
-                && !options.keep_dashes_whole;
-            let lines = holder.lines(&stroke);
+            on_page.extend(points.iter().map(|&p| self.page_from_image.transform_point2(p)));
+        };
+        let mut visible_ends = VisibleEnds::default();
+        if options.hidden == HiddenLines::Dashed {
+            for stroke in drawing.iter().filter(|stroke| stroke.qi == 0) {
+                place(stroke.points, &mut on_page);
+                visible_ends.add(&on_page);
+            }
+        }
+        for stroke in drawing.iter().filter(|stroke| is_drawn(stroke.qi)) {
+            place(stroke.points, &mut on_page);
+            let layer = holder.layer(&stroke);
+            let dash = options.dash.unwrap_or(Dash::of_pen(layer.pen.width_mm));
+            let lines = &mut layer.lines;
             cropped |= window.crop(&mut on_page, |piece| {
-                if dashed {
-                    options.dash.for_each_dash(piece, |dash| lines.push(dash.iter().copied()));
+                if let (true, [first, second, ..]) = (is_dashed(stroke.qi), piece) {
+                    let [before, last] = [piece[piece.len() - 2], piece[piece.len() - 1]];
+                    let goes_on =
+                        [(*first, *second), (last, before)].map(|(a, b)| visible_ends.go_on(a, b));
+                    dash.for_each_dash(piece, goes_on, |dash| lines.push(dash.iter().copied()));
                 } else {
                     lines.push(piece.iter().copied());
                 }

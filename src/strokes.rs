@@ -1,5 +1,7 @@
 //! Strokes: what the pen draws, as polylines in image coordinates.
 
+pub mod draft;
+
 use glam::DVec2;
 
 use crate::camera::Camera;

@@ -18,6 +18,8 @@ pub struct Seconds {
     pub visibility: f64,
     /// Chaining and filtering.
     pub strokes: f64,
+    /// Finishing lines on paper.
+    pub drafting: f64,
     /// Joining and ordering strokes for the pen.
     pub order: f64,
     /// Page and file.
@@ -29,8 +31,18 @@ pub struct Seconds {
 impl Seconds {
     /// The time of all stages together, without what lies between them.
     pub fn sum(&self) -> f64 {
-        let Self { read, topology, classify, visibility, strokes, order, write, total: _ } = self;
-        read + topology + classify + visibility + strokes + order + write
+        let Self {
+            read,
+            topology,
+            classify,
+            visibility,
+            strokes,
+            drafting,
+            order,
+            write,
+            total: _,
+        } = self;
+        read + topology + classify + visibility + strokes + drafting + order + write
     }
 }
 
@@ -41,6 +53,7 @@ impl AddAssign for Seconds {
         self.classify += more.classify;
         self.visibility += more.visibility;
         self.strokes += more.strokes;
+        self.drafting += more.drafting;
         self.order += more.order;
         self.write += more.write;
         self.total += more.total;

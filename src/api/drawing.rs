@@ -90,7 +90,7 @@ impl Drawing<'_> {
 
     /// Lengths of the dashes and gaps of hidden lines; see [`HiddenLines::Dashed`](crate::HiddenLines::Dashed).
     pub fn dash(mut self, dash: Dash) -> Self {
-        self.plot.dash = dash;
+        self.plot.dash = Some(dash);
         self
     }
 
@@ -125,7 +125,8 @@ impl Drawing<'_> {
     /// filled as asked.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
         let (camera, page) = self.place(page.into())?;
-        let strokes = self.strokes_on(&camera, &page, &self.lines)?;
+        let lines = DrawOptions { pen_width_mm: self.plot.pen_width_mm, ..self.lines };
+        let strokes = self.strokes_on(&camera, &page, &lines)?;
         let mut plot = PlotOptions { hidden: self.lines.hidden, ..self.plot.clone() };
         if self.hatch.is_some() {
             plot.pens = with_hatch_pen(plot.pens, plot.pen_width_mm);
@@ -155,7 +156,8 @@ impl Drawing<'_> {
     /// ```
     pub fn strokes(&self, page: impl Into<PageOptions>) -> Result<(Strokes, Page), Error> {
         let (camera, page) = self.place(page.into())?;
-        let lines = DrawOptions { apart_by_kind: true, ..self.lines };
+        let pen_width_mm = self.plot.pen_width_mm;
+        let lines = DrawOptions { apart_by_kind: true, pen_width_mm, ..self.lines };
         Ok((self.strokes_on(&camera, &page, &lines)?, page))
     }
 

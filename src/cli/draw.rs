@@ -9,11 +9,14 @@ use std::error::Error;
 use clap::Args;
 use glam::DVec2;
 use hiddenline::stages::camera::Camera;
+use hiddenline::stages::drafting::Drafted;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::hatch::{Ground, HatchOptions, HatchPage, hatch, shadow_outlines};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
-use hiddenline::stages::page::{Dash, PageOptions, PlotOptions, with_hatch_pen, with_line_pens};
+use hiddenline::stages::page::{
+    Dash, LineWeights, PageOptions, PlotOptions, with_hatch_pen, with_line_pens,
+};
 use hiddenline::stages::shading::light::LightSource;
 use hiddenline::stages::strokes::{StrokeKind, Strokes};
 use hiddenline::stages::timing::timed;
@@ -25,11 +28,13 @@ use self::lines::LineArgs;
 pub(super) use self::live::{Live, Turned};
 use super::camera::{CameraArgs, ViewSource};
 use super::hatch::{HatchArgs, LightArgs, with_remedy};
+use super::messages::counted;
 use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::{self, PageArgs};
 use super::paper::{Notes, PlacedPage, Run};
 use super::scene::Subject;
+use super::smooth::{SmoothArgs, Smoothing};
 use super::{Refused, config, source};
 
 const EXAMPLES: &str = "\
@@ -60,6 +65,8 @@ pub(super) struct DrawArgs {
     #[command(flatten)]
     model: ModelArgs,
     #[command(flatten)]
+    smooth: SmoothArgs,
+    #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
     lines: LineArgs,
@@ -76,6 +83,7 @@ pub(super) struct DrawArgs {
 /// What is to be done, with nothing left to check but what depends on the files.
 pub(super) struct Job {
     files: ModelFiles,
+    smoothing: Option<Smoothing>,
     view: ViewSource,
     draw: DrawOptions,
     hatch: Option<HatchOptions>,
@@ -85,7 +93,8 @@ pub(super) struct Job {
     unit_mm: f64,
     dxf_scale: DxfScale,
     pen_width_mm: f64,
-    dash: Dash,
+    dash: Option<Dash>,
+    weights: LineWeights,
     output: OutputOptions,
 }
 
@@ -93,28 +102,36 @@ impl DrawArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { model, camera, lines, hatch, light, page, output } = self;
+        let Self { model, smooth, camera, lines, hatch, light, page, output } = self;
         let files = model.files()?;
         let files = if lines.exact { files.with_equal_faces() } else { files };
         let files = files.in_unit(page.given_unit_mm());
         let mut output = output.options(lines.exact)?;
         output.warnings.extend(idle);
         output.warnings.extend(lines.without_effect(&output.plotting));
-        let has_outlines = lines.options().lines.contains(StrokeKind::Shadow);
+        let has_outlines = lines.lines.contains(StrokeKind::Shadow);
         output.warnings.extend(hatch.without_effect(has_outlines, &["--light", "--light-at"]));
         let view = camera.view_source();
         let inputs = files.inputs().chain(view.input()).chain(output.inputs.clone());
         check_place(output.path.as_deref(), inputs)?;
-        let apart_by_kind = output.format == Format::Json || output.plotting.has_pens_by_kind();
+        let weights = lines.style.weights();
+        let apart_by_kind = output.format == Format::Json
+            || output.plotting.has_pens_by_kind()
+            || weights.tells_kinds_apart();
+        let (pen_width_mm, overlap_mm) = (page.pen_width_mm(), output.plotting.overlap_mm());
+        let page_options = output.within_reach(page.options());
+        let smoothing = smooth.smoothing(page_options, pen_width_mm).filter(|_| !lines.exact);
         Ok(Job {
             files,
             view,
-            page: output.within_reach(page.options()),
+            smoothing,
+            page: page_options,
             unit_mm: page.unit_mm(),
             dxf_scale: page.dxf_scale(),
-            pen_width_mm: page.pen_width_mm(),
+            pen_width_mm,
             dash: lines.dash,
-            draw: DrawOptions { apart_by_kind, ..lines.options() },
+            weights,
+            draw: DrawOptions { apart_by_kind, ..lines.options(pen_width_mm, overlap_mm) },
             light: light.source(),
             ground: hatch.ground(),
             hatch: hatch.options(light.source()),
@@ -128,8 +145,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     let read = || job.files.read();
     let lines = Some(job.draw.lines);
-    let Subject { scene, camera, notes } =
-        Subject::read(read, &job.view, lines, !job.draw.exact, &run.progress, &mut run.stats)?;
+    let Subject { scene, camera, notes } = Subject::read(
+        read,
+        &job.view,
+        lines,
+        !job.draw.exact,
+        job.smoothing.as_ref(),
+        &run.progress,
+        &mut run.stats,
+    )?;
     let (drawing, sheet) = strokes(job, &scene, camera, notes, &mut run)?;
     drop(scene);
     run.draw(&drawing, &sheet, plot_options(job), &OptimizeOptions::for_drawings())
@@ -171,10 +195,44 @@ fn strokes(
     }
     run.stats.count(MeshSize::of(scene));
     run.stats.add(&drawn);
+    run.notes.add(drafting_notes(&drawn.drafted));
     if drawn.drawing.is_empty() {
         run.empty_because = why_empty(job, scene, &sheet, drawn.n_lines);
     }
     Ok((drawn.drawing, sheet))
+}
+
+/// What finishing the lines on paper did, and what would help.
+fn drafting_notes(drafted: &Drafted) -> Notes {
+    let mm = |length: f64| format!("{length:.0} mm");
+    let done = [
+        (drafted.n_joined > 0, format!("{} ends joined", drafted.n_joined)),
+        (
+            drafted.n_dropped > 0,
+            format!(
+                "{} ({}) left out",
+                counted(drafted.n_dropped, "short stroke", "short strokes"),
+                mm(drafted.dropped_mm)
+            ),
+        ),
+        (drafted.overlap_mm >= 0.5, format!("{} on other ink left out", mm(drafted.overlap_mm))),
+        (drafted.thinned_mm >= 0.5, format!("{} thinned out", mm(drafted.thinned_mm))),
+    ];
+    let done: Vec<String> =
+        done.into_iter().filter(|(is_told, _)| *is_told).map(|(_, text)| text).collect();
+    let mut notes = Notes::default();
+    if !done.is_empty() {
+        notes.summary = format!("\nlines: {}", done.join(", "));
+    }
+    if let Some(saved) = drafted.thinning_saves {
+        notes.hints.push(format!(
+            "{:.0} % of the ink has other ink beside it within a pen's width; --thin leaves room \
+             between lines and {:.0} % of the ink out",
+            100.0 * drafted.crowded_share,
+            100.0 * saved
+        ));
+    }
+    notes
 }
 
 /// Why a drawing has no strokes, and what helps.
@@ -201,7 +259,7 @@ fn why_empty(job: &Job, scene: &Scene, sheet: &PlacedPage, n_lines: usize) -> St
 
 fn plot_options(job: &Job) -> PlotOptions {
     let pens = with_line_pens(
-        job.output.plotting.pens(job.pen_width_mm),
+        job.weights.with_pens(job.output.plotting.pens(job.pen_width_mm), job.pen_width_mm),
         job.draw.lines,
         job.draw.hidden_levels,
         job.pen_width_mm,

@@ -34,6 +34,7 @@ use super::page::{self, PageArgs};
 use super::paper::{Run, placed};
 use super::progress::Progress;
 use super::scene::Subject;
+use super::smooth::{SmoothArgs, Smoothing};
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -77,6 +78,8 @@ pub(super) struct FillArgs {
     #[command(flatten)]
     input: InputArgs,
     #[command(flatten)]
+    smooth: SmoothArgs,
+    #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
     areas: AreaArgs,
@@ -112,6 +115,7 @@ struct EdgeArgs {
 /// What is to be done.
 pub(super) struct Job {
     input: Input,
+    smoothing: Option<Smoothing>,
     view: ViewSource,
     fill: FillOptions,
     leaf_mm: f64,
@@ -132,7 +136,7 @@ impl FillArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { input, camera, areas, edges, hatch, page, output } = self;
+        let Self { input, smooth, camera, areas, edges, hatch, page, output } = self;
         let input = input.input(DEFAULT_SAMPLES)?.in_unit(page.given_unit_mm());
         let mut output = output.options(false)?;
         output.warnings.extend(hatch.without_effect(false, &[]));
@@ -155,8 +159,13 @@ impl FillArgs {
             check_place(path.as_deref(), &inputs)?;
         }
         let pen_width_mm = page.pen_width_mm();
-        let lines =
-            DrawOptions { lines: edges.lines, crease_deg: edges.crease, ..Default::default() };
+        let page_options = output.within_reach(page.options());
+        let lines = DrawOptions {
+            lines: edges.lines,
+            crease_deg: edges.crease,
+            pen_width_mm,
+            ..Default::default()
+        };
         if areas.white && edges.lines.has_outline() {
             return Err("--white draws whole edges; leave outline out of --lines".into());
         }
@@ -173,6 +182,7 @@ impl FillArgs {
         fill.check().map_err(|error| error.to_string())?;
         Ok(Job {
             input,
+            smoothing: smooth.smoothing(page_options, pen_width_mm),
             view,
             fill,
             leaf_mm: areas.leaf.unwrap_or(pen_width_mm),
@@ -181,7 +191,7 @@ impl FillArgs {
             edges: (!edges.no_edges).then_some(lines),
             hatch,
             paints_over: areas.white,
-            page: output.within_reach(page.options()),
+            page: page_options,
             pen_width_mm,
             output,
         })
@@ -193,8 +203,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     let read = || job.input.mesh();
     let lines = job.edges.map(|edges| edges.lines);
-    let Subject { scene, camera, notes } =
-        Subject::read(read, &job.view, lines, lines.is_some(), &run.progress, &mut run.stats)?;
+    let Subject { scene, camera, notes } = Subject::read(
+        read,
+        &job.view,
+        lines,
+        lines.is_some(),
+        job.smoothing.as_ref(),
+        &run.progress,
+        &mut run.stats,
+    )?;
     // Without --unit the page was made for millimeters.
     let page = page::in_unit(job.page, notes.unit_mm.unwrap_or(1.0));
     run.notes.add(notes);

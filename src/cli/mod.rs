@@ -23,6 +23,7 @@ mod plotting;
 mod preview;
 mod progress;
 mod scene;
+mod smooth;
 mod source;
 mod stats;
 mod suggestion;

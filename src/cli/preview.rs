@@ -22,6 +22,7 @@ use super::output::{OutputOptions, check_place};
 use super::paper::{Run, Written};
 use super::paths::is_dash;
 use super::scene::Subject;
+use super::smooth::{SmoothArgs, Smoothing};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -55,6 +56,8 @@ pub(super) struct PreviewArgs {
     #[command(flatten)]
     input: InputArgs,
     #[command(flatten)]
+    smooth: SmoothArgs,
+    #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
     picture: PictureArgs,
@@ -79,6 +82,7 @@ pub(super) struct PreviewArgs {
 /// What is to be done.
 pub(super) struct Job {
     input: Input,
+    smoothing: Option<Smoothing>,
     view: ViewSource,
     options: PreviewOptions,
     edges: Option<LineSelection>,
@@ -90,7 +94,8 @@ impl PreviewArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { input, camera, picture, output, threads, stats, quiet, preset: _ } = self;
+        let Self { input, smooth, camera, picture, output, threads, stats, quiet, preset: _ } =
+            self;
         let input = input.input(DEFAULT_SAMPLES)?;
         let path = output.filter(|path| !is_dash(path));
         let view = camera.view_source();
@@ -98,6 +103,7 @@ impl PreviewArgs {
         check_picture(path.as_deref())?;
         Ok(Job {
             input,
+            smoothing: smooth.of_picture(),
             view,
             options: picture.options()?,
             edges: picture.edges.then_some(picture.lines),
@@ -126,8 +132,15 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     let read = || job.input.mesh();
     let finds_bends = job.edges.is_some();
-    let Subject { scene, camera, notes } =
-        Subject::read(read, &job.view, job.edges, finds_bends, &run.progress, &mut run.stats)?;
+    let Subject { scene, camera, notes } = Subject::read(
+        read,
+        &job.view,
+        job.edges,
+        finds_bends,
+        job.smoothing.as_ref(),
+        &run.progress,
+        &mut run.stats,
+    )?;
     run.notes.add(notes);
     if job.options.fit_fov && camera.projection() == Projection::Orthographic {
         return Err(with_remedy(&PreviewError::NoFieldOfView).into());

@@ -12,6 +12,7 @@ use hiddenline::stages::timing::timed;
 use super::camera::ViewSource;
 use super::paper::Notes;
 use super::progress::Progress;
+use super::smooth::Smoothing;
 use super::stats::Stats;
 
 /// What is drawn: a scene, the camera, and what reading had to report.
@@ -23,18 +24,26 @@ pub(super) struct Subject {
 
 impl Subject {
     /// Reads a mesh and finds its edges; also where faces cross if `lines` include intersections, and where
-    /// bent faces fold and edges are flush if `finds_bends`.
+    /// bent faces fold and edges are flush if `finds_bends`. Curved parts are refined first.
     pub(super) fn read(
         mesh: impl FnOnce() -> Result<(Mesh, Notes), Box<dyn Error>>,
         view: &ViewSource,
         lines: Option<LineSelection>,
         finds_bends: bool,
+        smoothing: Option<&Smoothing>,
         progress: &Progress,
         stats: &mut Stats,
     ) -> Result<Self, Box<dyn Error>> {
         progress.stage("reading");
-        let (mesh, notes) = timed(&mut stats.seconds.read, mesh)?;
+        let (mesh, mut notes) = timed(&mut stats.seconds.read, mesh)?;
         let camera = view.camera(mesh.bounds().unwrap_or_default())?;
+        let mesh = match smoothing {
+            Some(smoothing) => {
+                progress.stage("smoothing");
+                timed(&mut stats.seconds.topology, || smoothing.refine(mesh, &camera, &mut notes))?
+            }
+            None => mesh,
+        };
         progress.stage("finding edges");
         let needs = Needs::new(lines, finds_bends);
         let scene = timed(&mut stats.seconds.topology, || needs.scene(mesh));

@@ -14,9 +14,7 @@ use hiddenline::stages::draw::surface::{
 use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions};
 use hiddenline::stages::hatch::{HatchOptions, HatchPage, hatch};
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
-use hiddenline::stages::page::{
-    Dash, PageOptions, PlotOptions, with_hatch_pen, with_underside_pen,
-};
+use hiddenline::stages::page::{PageOptions, PlotOptions, with_hatch_pen, with_underside_pen};
 use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::surface::Surface;
 use hiddenline::stages::timing::timed;
@@ -156,7 +154,7 @@ fn plot_options(job: &Job) -> PlotOptions {
     PlotOptions {
         pen_width_mm: job.pen_width_mm,
         hidden: HiddenLines::None,
-        dash: Dash { dash_mm: 2.5, gap_mm: 1.25 },
+        dash: None,
         keep_dashes_whole: false,
         title: job.sheets.title(),
         pens: job.output.plotting.with_kinds_apart(pens, job.pen_width_mm),

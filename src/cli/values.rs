@@ -7,6 +7,7 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 use glam::DVec3;
 use hiddenline::stages::classify::LineSelection;
+use hiddenline::stages::model::smooth::SmoothParts;
 use hiddenline::stages::optimize::Effort;
 use hiddenline::stages::page::{Dash, LayerControls, PenRole, parse_length_mm};
 use hiddenline::stages::shading::preview::LARGEST_SIDE;
@@ -33,6 +34,25 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
 /// Degrees from 0 to 180.
 pub(super) fn crease(text: &str) -> Result<f64, String> {
     not_negative(text).and_then(|x| if x <= 180.0 { Ok(x) } else { Err("at most 180".into()) })
+}
+
+/// Which parts of a model are smooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Smooth {
+    Off,
+    Parts(SmoothParts),
+}
+
+/// `off`, `auto`, or degrees from 0 to 180.
+pub(super) fn smooth(text: &str) -> Result<Smooth, String> {
+    match text {
+        "off" => Ok(Smooth::Off),
+        "auto" => Ok(Smooth::Parts(SmoothParts::ByNormals)),
+        _ => match crease(text) {
+            Ok(degrees) => Ok(Smooth::Parts(SmoothParts::Below(degrees))),
+            Err(_) => Err("give off, auto, or degrees from 0 to 180".into()),
+        },
+    }
 }
 
 /// Degrees between 0 and 180.

@@ -5,6 +5,7 @@ use super::DrawOutput;
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
+use crate::drafting::Drafted;
 use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, solve};
 use crate::engines::surface::{max_min, tin};
 use crate::engines::visibility::Visibility;
@@ -85,7 +86,8 @@ pub fn draw(
         drawing
     });
     let n_lines = view.selected().len();
-    DrawOutput { drawing, engine, n_lines, counts, n_exact, seconds }
+    let drafted = Drafted::default();
+    DrawOutput { drawing, engine, n_lines, counts, n_exact, drafted, seconds }
 }
 
 /// The surface with its own lines and those of the view that the options ask for.

@@ -17,4 +17,10 @@ pub mod intersections;
 
 pub mod bends;
 
+pub mod creases;
+
+pub mod smooth;
+
+pub mod looseness;
+
 pub mod scene;

@@ -15,6 +15,7 @@ use crate::extent::Extent;
 use crate::model::bends::{Bend, bends};
 use crate::model::flush::{BoundaryPart, FlushEdges, flush_edges};
 use crate::model::intersections::Intersections;
+use crate::model::looseness::Looseness;
 use crate::model::mesh::Mesh;
 use crate::model::topology::{EdgeUse, Topology};
 use crate::model::triangulate::{newell_normal, triangulate};
@@ -78,6 +79,7 @@ pub struct Scene {
     normals: OnceLock<Vec<DVec3>>,
     dihedrals: OnceLock<Vec<Dihedral>>,
     groups: OnceLock<Vec<u32>>,
+    looseness: OnceLock<Looseness>,
     flush_edges: FlushEdges,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
     points: Vec<DVec3>,
@@ -226,7 +228,7 @@ impl Scene {
     /// The Newell normal of each face, not normalized. Computed when first asked for; O(corners), in
     /// parallel.
     pub fn normals(&self) -> &[DVec3] {
-        computed_once(&self.normals, || {
+        computed_once::<Vec<DVec3>>(&self.normals, || {
             let faces = (0..self.mesh.n_faces() as u32).into_par_iter();
             faces.map(|face| newell_normal(self.mesh.positions(), self.mesh.face(face))).collect()
         })
@@ -236,17 +238,22 @@ impl Scene {
     /// against each other; none above 0° at edges of more or fewer faces. Computed when first asked for;
     /// O(corners), in parallel.
     pub fn dihedrals(&self) -> &[Dihedral] {
-        computed_once(&self.dihedrals, || {
+        computed_once::<Vec<Dihedral>>(&self.dihedrals, || {
             let normals = self.normals();
             let edges = (0..self.topology.edges().len() as u32).into_par_iter().with_min_len(4096);
             edges.map(|edge| dihedral(self.topology.uses(edge), normals)).collect()
         })
     }
 
+    /// How much the models are grown ones, measured when first asked for.
+    pub(super) fn looseness_or(&self, measure: impl FnOnce(&Self) -> Looseness) -> &Looseness {
+        computed_once(&self.looseness, || measure(self))
+    }
+
     /// For each face a number that faces of equal group and material share; empty when the model
     /// names neither. Computed when first asked for.
     pub fn groups(&self) -> &[u32] {
-        computed_once(&self.groups, || {
+        computed_once::<Vec<u32>>(&self.groups, || {
             let mut first = HashMap::new();
             let names = self.mesh.parts().iter().map(|part| (&part.group, &part.material));
             let numbers: Vec<u32> =
@@ -295,7 +302,7 @@ fn dihedral(uses: &[EdgeUse], normals: &[DVec3]) -> Dihedral {
 /// Views may be drawn in parallel, and `compute` runs in parallel itself. So the cell is not locked
 /// meanwhile: a thread that picks up another view's work would deadlock. Two threads may both compute
 /// the value.
-fn computed_once<T>(cell: &OnceLock<Vec<T>>, compute: impl FnOnce() -> Vec<T>) -> &[T] {
+fn computed_once<T>(cell: &OnceLock<T>, compute: impl FnOnce() -> T) -> &T {
     match cell.get() {
         Some(known) => known,
         None => {

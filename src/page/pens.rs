@@ -6,7 +6,7 @@ use crate::classify::LineSelection;
 use crate::plot::{Layer, Pen, Polylines};
 use crate::strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
 
-use super::PlotOptions;
+use super::{Dash, PlotOptions};
 
 /// Strokes that a pen can be given for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +145,9 @@ const OUTLINE_COLOR: &str = "#101010";
 /// Nearly black too, and different from both.
 const HATCH_COLOR: &str = "#202020";
 
+/// As nearly black as these, and another color again.
+const SILHOUETTE_COLOR: &str = "#181818";
+
 /// Blue: easy to distinguish from the black of upper sides, for people and for programs.
 const UNDERSIDE_COLOR: &str = "#0000c0";
 
@@ -165,6 +168,43 @@ pub fn idle_pens(roles: &[PenRole], strokes: &Strokes) -> Vec<PenRole> {
         idle.retain(|other| *other != role);
     }
     idle
+}
+
+/// How wide lines are that end a surface in the image.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LineWeights {
+    /// As wide as all visible lines.
+    #[default]
+    Plain,
+    /// The outline twice as wide.
+    Technical,
+    /// The outline four times and silhouettes twice as wide.
+    Bold,
+}
+
+impl LineWeights {
+    /// The lines to draw, with the outline where it has a width of its own.
+    #[must_use]
+    pub fn lines(self, lines: LineSelection) -> LineSelection {
+        if self == Self::Plain { lines } else { lines.with_outline() }
+    }
+
+    /// Whether kinds of line have pens of their own.
+    pub fn tells_kinds_apart(self) -> bool {
+        self == Self::Bold
+    }
+
+    /// Adds its pens to `rules`, unless these have some. The outline of twice the width comes with the
+    /// usual pens.
+    #[must_use]
+    pub fn with_pens(self, mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
+        if self == Self::Bold {
+            add_pen(&mut rules, PenRole::Outline, 4.0 * width_mm, OUTLINE_COLOR.into());
+            let silhouette = PenRole::Kind(StrokeKind::Silhouette);
+            add_pen(&mut rules, silhouette, 2.0 * width_mm, SILHOUETTE_COLOR.into());
+        }
+        rules
+    }
 }
 
 /// Adds the usual pens of a drawing of models to `rules`, unless these have some: one twice as wide
@@ -220,25 +260,26 @@ pub(super) struct Holder {
     fixed: Vec<bool>,
     visible: usize,
     hidden: usize,
-    /// The pattern of layers for hidden lines.
-    dash_mm: Option<[f64; 2]>,
+    /// Whether layers for hidden lines have a pattern, and which; otherwise that of their pen.
+    has_patterns: bool,
+    dash: Option<Dash>,
 }
 
 impl Holder {
     pub(super) fn new(options: &PlotOptions) -> Self {
         let has_patterns = options.keep_dashes_whole && options.hidden == HiddenLines::Dashed;
-        let dash_mm = has_patterns.then_some([options.dash.dash_mm, options.dash.gap_mm]);
         let mut holder = Self {
             rules: Vec::new(),
             layers: Vec::new(),
             fixed: Vec::new(),
             visible: 0,
             hidden: 0,
-            dash_mm,
+            has_patterns,
+            dash: options.dash,
         };
         let with_hidden = options.hidden != HiddenLines::None;
         for rule in options.pens.iter().filter(|r| with_hidden || !r.drawn.is_hidden()) {
-            let is_dashed = dash_mm.is_some() && rule.drawn.is_hidden();
+            let is_dashed = has_patterns && rule.drawn.is_hidden();
             // Whole lines and lines with a pattern cannot share a layer.
             let is_shared = |l: &Layer| l.number == rule.number && l.dash_mm.is_some() == is_dashed;
             let layer = match holder.layers.iter().position(is_shared) {
@@ -276,25 +317,27 @@ impl Holder {
 
     fn add(&mut self, drawn: PenRole, number: u32, pen: Pen, fixed: bool) -> usize {
         let name = drawn.name().into_owned();
+        let dash = self.dash.unwrap_or(Dash::of_pen(pen.width_mm));
+        let has_pattern = self.has_patterns && drawn.is_hidden();
         self.layers.push(Layer {
             number,
             name,
             pen,
             lines: Polylines::default(),
-            dash_mm: self.dash_mm.filter(|_| drawn.is_hidden()),
+            dash_mm: has_pattern.then_some([dash.dash_mm, dash.gap_mm]),
             ..Layer::default()
         });
         self.fixed.push(fixed);
         self.layers.len() - 1
     }
 
-    /// Where a stroke goes, if it goes anywhere.
-    pub(super) fn lines(&mut self, stroke: &Stroke) -> &mut Polylines {
+    /// Where a stroke goes.
+    pub(super) fn layer(&mut self, stroke: &Stroke) -> &mut Layer {
         let ruled = |drawn| self.rules.iter().rev().find(|rule| rule.0 == drawn).map(|rule| rule.1);
         let role = PenRole::of(stroke, |role| ruled(role).is_some());
         let usual = if role.is_hidden() { self.hidden } else { self.visible };
         let layer = ruled(role).unwrap_or(usual);
-        &mut self.layers[layer].lines
+        &mut self.layers[layer]
     }
 
     /// The layers by number, without those that nobody asked for and nothing is drawn on.

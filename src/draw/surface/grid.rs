@@ -4,6 +4,7 @@ use super::error::SurfaceError;
 use super::options::{SurfaceEngine, SurfaceLines};
 use crate::camera::Camera;
 use crate::chain::grid_lines::{GridLines, strokes};
+use crate::drafting::Drafted;
 use crate::draw::{DrawOutput, MeshSize};
 use crate::engines::edge::LineCounts;
 use crate::engines::surface::floating_horizon::Family;
@@ -89,6 +90,7 @@ pub(super) fn draw_grid(
         n_lines: pieces.n_edges(),
         counts: LineCounts { candidate_pairs: pieces.work().comparisons, ..LineCounts::default() },
         n_exact: pieces.work().exact,
+        drafted: Drafted::default(),
         seconds,
     };
     Ok((drawn, size))

@@ -139,6 +139,7 @@ fn crossing_boxes_are_drawn_in_full_length_from_everywhere() {
                 engine,
                 exact,
                 shortest_stroke_mm: 0.0,
+                pen_width_mm: 0.0,
                 ..DrawOptions::default()
             };
             let drawing = draw(&built, &camera, &options, 1.0).drawing;

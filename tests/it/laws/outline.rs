@@ -102,7 +102,9 @@ fn nothing_of_the_true_outline_is_left_out() {
 }
 
 fn drawing(scene: &TestScene, lines: LineSelection) -> Strokes {
-    let options = DrawOptions { lines, apart_by_kind: true, ..DrawOptions::default() };
+    // A pen without width sees every gap.
+    let options =
+        DrawOptions { lines, apart_by_kind: true, pen_width_mm: 0.0, ..DrawOptions::default() };
     let built = Scene::new(mesh(scene));
     draw(&built, &camera(scene), &options, 100.0).drawing
 }

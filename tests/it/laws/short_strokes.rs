@@ -74,5 +74,7 @@ fn short_hidden_strokes_are_drawn_and_short_visible_ones_are_not() {
     assert_eq!(level_strokes(&[plate, below], 3.0), [(false, 1.0, 1.5); 2]);
     let above = level([1.0, 1.5], [-0.25, 0.25], 2.0);
     assert_eq!(level_strokes(&[plate, above], 3.0), []);
-    assert_eq!(level_strokes(&[plate, above], 1.0), [(true, 1.0, 1.5); 2]);
+    // What counts is how far it reaches.
+    assert_eq!(level_strokes(&[plate, above], 0.7), [(true, 1.0, 1.5); 2]);
+    assert_eq!(level_strokes(&[plate, above], 0.71), []);
 }

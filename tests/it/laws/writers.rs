@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, dvec2};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::page::{
-    Dash, Orientation, Page, PageError, PageOptions, Paper, PlacedPlot, Placement, PlotOptions,
+    Orientation, Page, PageError, PageOptions, Paper, PlacedPlot, Placement, PlotOptions,
 };
 use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
 use hiddenline::stages::strokes::HiddenLines;
@@ -38,7 +38,7 @@ fn options(hidden: HiddenLines) -> PlotOptions {
         pen_width_mm: 0.3,
         pens: Vec::new(),
         hidden,
-        dash: Dash::default(),
+        dash: None,
         keep_dashes_whole: false,
         title: "a <title> & more".into(),
         source: "hiddenline draw 'a<b'".into(),
@@ -165,8 +165,8 @@ fn dashes_are_real_segments_on_the_hidden_layer() {
     let names: Vec<_> = plot.layers.iter().map(|layer| (layer.number, &*layer.name)).collect();
     assert_eq!(names, [(1, "visible"), (2, "hidden")]);
     assert_eq!(plot.layers[0].lines.len(), 1);
-    // 277 mm in periods of about 3.75 mm.
-    assert_eq!(plot.layers[1].lines.len(), 74);
+    // 277 mm in periods of about 4.5 mm.
+    assert_eq!(plot.layers[1].lines.len(), 62);
     let solid = page.plot(&drawing, options(HiddenLines::Solid)).plot;
     assert_eq!(solid.layers[1].lines.len(), 1);
     assert_eq!(page.plot(&drawing, options(HiddenLines::None)).plot.layers.len(), 1);

@@ -176,8 +176,17 @@ fn stats_are_the_last_line_with_all_keys() {
     for key in ["engine", "triangles", "drawn_edges", "strokes", "points", "peak_bytes"] {
         assert!(stats.get(key).is_some(), "{key}");
     }
-    for key in ["read", "topology", "classify", "visibility", "strokes", "order", "write", "total"]
-    {
+    for key in [
+        "read",
+        "topology",
+        "classify",
+        "visibility",
+        "strokes",
+        "drafting",
+        "order",
+        "write",
+        "total",
+    ] {
         assert!(stats["seconds"][key].is_number(), "{key}");
     }
     for key in ["candidate_pairs", "exact_predicates", "contour_crossings", "fallback_edges"] {

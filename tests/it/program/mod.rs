@@ -1,6 +1,7 @@
 //! The program as users run it.
 
 mod cli;
+mod drafting;
 mod drawings;
 mod empty;
 pub(crate) mod fill;

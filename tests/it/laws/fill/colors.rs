@@ -9,7 +9,7 @@ use hiddenline::stages::camera::framing::View;
 use hiddenline::stages::engines::face::FaceEngine;
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::model::scene::Scene;
-use hiddenline::stages::page::{Dash, Page, PageOptions, Placement, PlotOptions};
+use hiddenline::stages::page::{Page, PageOptions, Placement, PlotOptions};
 use hiddenline::stages::plot::{Fills, Plot};
 use hiddenline::stages::shading::fill::{Coloring, FillError, FillOptions, Filled, Palette, fill};
 use hiddenline::stages::strokes::Strokes;
@@ -40,7 +40,7 @@ fn plot(filled: &Filled, camera: &Camera, options: &PageOptions, seam_mm: f64) -
         pen_width_mm: 0.3,
         pens: Vec::new(),
         hidden: Default::default(),
-        dash: Dash::default(),
+        dash: None,
         keep_dashes_whole: false,
         title: String::new(),
         source: String::new(),

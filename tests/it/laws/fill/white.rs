@@ -7,7 +7,7 @@ use hiddenline::stages::classify::LineSelection;
 use hiddenline::stages::draw::{DrawOptions, draw};
 use hiddenline::stages::engines::face::images::Images;
 use hiddenline::stages::engines::face::{FaceEngine, FaceOptions, Prepared};
-use hiddenline::stages::page::{Dash, Page, PageOptions, Placement, PlotOptions};
+use hiddenline::stages::page::{Page, PageOptions, Placement, PlotOptions};
 use hiddenline::stages::plot::{Area, Fills};
 use hiddenline::stages::shading::fill::FillError;
 use hiddenline::stages::shading::white::paint_over;
@@ -209,7 +209,7 @@ fn outlines_end_at_the_margins() {
             pen_width_mm: 0.3,
             pens: Vec::new(),
             hidden: HiddenLines::None,
-            dash: Dash::default(),
+            dash: None,
             keep_dashes_whole: false,
             title: String::new(),
             source: String::new(),

@@ -1,0 +1,341 @@
+//! From exact pieces to clean strokes: what belongs together is joined, what is lost without being missed
+//! is left out.
+//!
+//! | step | does |
+//! |---|---|
+//! | stitch | joins ends that go on into each other; see [`stitch`](super::stitch) |
+//! | corners | joins two ends that meet with no third one near |
+//! | shadows | leaves out short strokes that lie beside longer ink |
+//! | specks, spurs | leaves out small isolated figures, and short strokes with a loose end |
+//!
+//! The order matters: what is not joined first is eaten piece by piece. An outline is never opened, and
+//! borders and closed figures stay.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::strokes::StrokeKind;
+use crate::strokes::draft::{Draft, DraftPoint, extent, is_closed, length};
+
+use super::Paper;
+use super::background::LazyBackground;
+use super::edits::{Edits, Ends, Tidied};
+use super::near::{Parts, SegmentGrid, part_within};
+use super::stitch::stitch;
+
+/// Most rounds of stitching: what was joined may be joined again.
+const ROUNDS: usize = 3;
+
+/// A short stroke is no longer than this many times its greatest extent.
+const MOST_CURLED: f64 = 3.0;
+
+/// Strokes with more outline than this share of their length are not left out.
+const MOST_OUTLINE: f64 = 0.3;
+
+/// Loops at least this large are figures, not specks.
+const LOOP_MM: f64 = 1.0;
+
+/// Ends this near to each other close a loop.
+const CLOSED_MM: f64 = 0.05;
+
+/// Joins and cleans the strokes of a draft. Strokes whose extent is below `shortest` are left out last.
+///
+/// Without a background nothing is known of outlines. O(points), in parallel.
+pub(super) fn tidy(
+    draft: Draft,
+    paper: &Paper,
+    background: Option<&mut LazyBackground>,
+    shortest: f64,
+    tidied: &mut Tidied,
+) -> Draft {
+    let mut draft = draft;
+    let rounds = |draft: &mut Draft, tidied: &mut Tidied| {
+        for _ in 0..ROUNDS {
+            let Some(joined) = stitch(draft, paper, tidied) else { break };
+            *draft = joined;
+        }
+    };
+    rounds(&mut draft, tidied);
+    draft = corners(draft, paper, tidied);
+    draft = shadows(draft, paper, tidied);
+    rounds(&mut draft, tidied);
+    draft = specks_and_spurs(draft, paper, background, tidied);
+    draft = corners(draft, paper, tidied);
+    draft = shadows(draft, paper, tidied);
+    rounds(&mut draft, tidied);
+    without(draft, tidied, |points| extent(points) < shortest)
+}
+
+/// Joins what goes on into each other after parts were left out, around corners too, and leaves out
+/// what is lost without being missed.
+pub(super) fn rejoin(
+    draft: Draft,
+    paper: &Paper,
+    background: &mut LazyBackground,
+    shortest: f64,
+) -> Draft {
+    let mut tidied = Tidied::default();
+    let [visible, hidden] = draft.by_visibility().map(|mut draft| {
+        for _ in 0..ROUNDS {
+            let Some(joined) = stitch(&draft, paper, &mut tidied) else { break };
+            draft = joined;
+        }
+        corners(draft, paper, &mut tidied)
+    });
+    let visible = shadows(visible, paper, &mut tidied);
+    let visible = specks_and_spurs(visible, paper, Some(background), &mut tidied);
+    let mut all = without(visible, &mut tidied, |points| extent(points) < shortest);
+    all.append(&hidden);
+    all
+}
+
+/// Joins two ends within a pen's width of each other, whatever the turn, if no third one is there.
+fn corners(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
+    let grid = paper.grid(&draft);
+    let ends = Ends::new(&draft);
+    let n_ends = 2 * draft.len() as u32;
+    // The only other end near each, if there is one.
+    let only: Vec<Option<u32>> = (0..n_ends)
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|end| {
+            if !ends.has(end / 2) {
+                return None;
+            }
+            let (mut found, mut is_only) = (None, true);
+            for_each_end_near(end, &draft, &grid, &ends, paper.pen, |other| {
+                is_only &= found.is_none_or(|known| known == other);
+                found = Some(other);
+            });
+            found.filter(|_| is_only)
+        })
+        .collect();
+    let mut edits = Edits::new(&draft);
+    let mut n_joined = 0;
+    for (end, other) in (0..n_ends).zip(&only) {
+        if let Some(other) = other.filter(|&other| end < other && only[other as usize] == Some(end))
+        {
+            // A stroke this short would become a dot.
+            let is_dot = other == end ^ 1 && ends.length(end / 2) <= 2.0 * paper.pen;
+            if !is_dot {
+                edits.join(end, other);
+                n_joined += 1;
+                tidied.farthest = tidied.farthest.max(ends.at(end).distance(ends.at(other)));
+            }
+        }
+    }
+    tidied.n_joined += n_joined;
+    if n_joined > 0 { edits.apply(&draft) } else { draft }
+}
+
+/// Calls `f` with the ends within `reach` of an end, some more than once.
+fn for_each_end_near(
+    end: u32,
+    draft: &Draft,
+    grid: &SegmentGrid,
+    ends: &Ends,
+    reach: f64,
+    mut f: impl FnMut(u32),
+) {
+    let at = ends.at(end);
+    grid.near(at, at, reach, |segment| {
+        let stroke = grid.stroke(segment);
+        for (side, point) in [(0, segment), (1, segment + 1)] {
+            let other = 2 * stroke + side;
+            if other != end
+                && ends.point(other) == point
+                && ends.has(stroke)
+                && at.distance(draft.points()[point as usize].at) <= reach
+            {
+                f(other);
+            }
+        }
+    });
+}
+
+/// Leaves out short strokes all of which lies within a pen's width of longer ones.
+fn shadows(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
+    let grid = paper.grid(&draft);
+    let lengths: Vec<f64> = draft.iter().map(length).collect();
+    let points = draft.points();
+    let is_longer = |other: u32, stroke: usize| {
+        let key = |stroke: usize| (lengths[stroke], std::cmp::Reverse(stroke));
+        key(other as usize) > key(stroke)
+    };
+    let is_shadow = |stroke: usize, parts: &mut Parts| {
+        let is_short = lengths[stroke] < MOST_CURLED * paper.figure
+            && extent(draft.stroke(stroke)) < paper.figure;
+        let range = draft.range(stroke);
+        is_short
+            && (range.start..range.end - 1).all(|i| {
+                let segment = [points[i].at, points[i + 1].at];
+                parts.clear();
+                grid.near(segment[0], segment[1], paper.pen, |other| {
+                    if is_longer(grid.stroke(other), stroke) {
+                        let other = [other, other + 1].map(|k| points[k as usize].at);
+                        if let Some((t0, t1)) = part_within(segment, other, paper.pen) {
+                            parts.add(t0, t1);
+                        }
+                    }
+                });
+                matches!(parts.join(ROUNDING), [(from, to)] if *from <= ROUNDING && *to >= 1.0 - ROUNDING)
+            })
+    };
+    let shadows: Vec<bool> = (0..draft.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .map_init(Parts::default, |parts, stroke| is_shadow(stroke, parts))
+        .collect();
+    let mut edits = Edits::new(&draft);
+    for stroke in (0..draft.len()).filter(|&stroke| shadows[stroke]) {
+        edits.drop(stroke);
+        tidied.n_dropped += 1;
+        tidied.dropped += lengths[stroke];
+    }
+    if shadows.contains(&true) { edits.apply(&draft) } else { draft }
+}
+
+/// Parts of a segment that are this close to its ends, or to each other, meet there.
+const ROUNDING: f64 = 1e-9;
+
+/// Leaves out small isolated figures, and short strokes with a loose end. One pass: what a stroke hung
+/// on is not left out next.
+fn specks_and_spurs(
+    draft: Draft,
+    paper: &Paper,
+    background: Option<&mut LazyBackground>,
+    tidied: &mut Tidied,
+) -> Draft {
+    // Only of what could be left out need be known what it is.
+    let is_small = |points: &[DraftPoint]| {
+        extent(points) < paper.figure && !is_border(points) && !is_loop(points, paper)
+    };
+    if !draft.iter().any(is_small) {
+        return draft;
+    }
+    let background = background.map(|background| background.get());
+    let grid = paper.grid(&draft);
+    let ends = Ends::new(&draft);
+    // Strokes near each end; they may repeat.
+    let near: Vec<Vec<u32>> = (0..2 * draft.len() as u32)
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|end| {
+            let mut near = Vec::new();
+            if ends.has(end / 2) {
+                let at = ends.at(end);
+                grid.near(at, at, paper.pen, |segment| {
+                    let other = grid.stroke(segment);
+                    let ends = [segment, segment + 1].map(|k| draft.points()[k as usize].at);
+                    let is_new = other != end / 2 && near.last() != Some(&other);
+                    if is_new && part_within([at, at], ends, paper.pen).is_some() {
+                        near.push(other);
+                    }
+                });
+            }
+            near
+        })
+        .collect();
+    let mut figures = Figures::new(draft.len());
+    for (end, near) in near.iter().enumerate() {
+        near.iter().for_each(|&other| figures.unite(end as u32 / 2, other));
+    }
+    let first = |stroke: usize| draft.stroke(stroke)[0].at;
+    let mut boxes: Vec<(DVec2, DVec2)> = (0..draft.len()).map(|s| (first(s), first(s))).collect();
+    for (stroke, points) in draft.iter().enumerate() {
+        let (low, high) = &mut boxes[figures.of(stroke as u32) as usize];
+        for point in points {
+            (*low, *high) = (low.min(point.at), high.max(point.at));
+        }
+    }
+    let holds: Vec<bool> = draft
+        .iter()
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .with_min_len(64)
+        .map(|points| {
+            !is_small(points) || background.is_some_and(|b| b.share_beside(points) > MOST_OUTLINE)
+        })
+        .collect();
+    let mut figure_holds = vec![false; draft.len()];
+    for stroke in 0..draft.len() {
+        figure_holds[figures.of(stroke as u32) as usize] |= holds[stroke];
+    }
+    let mut edits = Edits::new(&draft);
+    let mut n_dropped = 0;
+    for stroke in 0..draft.len() {
+        let figure = figures.of(stroke as u32) as usize;
+        let (low, high) = boxes[figure];
+        let is_speck = low.distance(high) < paper.figure && !figure_holds[figure];
+        let is_loose = |side: usize| near[2 * stroke + side].is_empty();
+        let is_spur = !holds[stroke] && ends.has(stroke as u32) && (is_loose(0) || is_loose(1));
+        if is_speck || is_spur {
+            edits.drop(stroke);
+            n_dropped += 1;
+            tidied.dropped += length(draft.stroke(stroke));
+        }
+    }
+    tidied.n_dropped += n_dropped;
+    if n_dropped > 0 { edits.apply(&draft) } else { draft }
+}
+
+/// Whether a stroke has a part that ends a surface, or that the model has as a line of its own.
+fn is_border(points: &[DraftPoint]) -> bool {
+    let border = [StrokeKind::Boundary, StrokeKind::Nonmanifold, StrokeKind::Wire];
+    points.iter().any(|point| border.contains(&point.mark.kind))
+}
+
+/// Whether a stroke goes around something that can be seen on paper.
+fn is_loop(points: &[DraftPoint], paper: &Paper) -> bool {
+    let [first, .., last] = points else { return false };
+    let extent = extent(points);
+    let gap = first.at.distance(last.at);
+    let twice = |pair: &[DraftPoint]| (pair[0].at - first.at).perp_dot(pair[1].at - first.at);
+    let area = 0.5 * points.windows(2).map(twice).sum::<f64>().abs();
+    (is_closed(points) || gap <= CLOSED_MM * paper.mm)
+        && extent >= LOOP_MM * paper.mm
+        && area >= paper.pen * extent
+}
+
+/// The draft without strokes of which `is_left_out` says so.
+fn without(
+    draft: Draft,
+    tidied: &mut Tidied,
+    is_left_out: impl Fn(&[DraftPoint]) -> bool,
+) -> Draft {
+    let mut edits = Edits::new(&draft);
+    let mut n_dropped = 0;
+    for (stroke, points) in draft.iter().enumerate().filter(|(_, points)| is_left_out(points)) {
+        edits.drop(stroke);
+        n_dropped += 1;
+        tidied.dropped += length(points);
+    }
+    tidied.n_dropped += n_dropped;
+    if n_dropped > 0 { edits.apply(&draft) } else { draft }
+}
+
+/// Strokes that hang together.
+struct Figures {
+    parents: Vec<u32>,
+}
+
+impl Figures {
+    fn new(n: usize) -> Self {
+        Self { parents: (0..n as u32).collect() }
+    }
+
+    fn of(&mut self, stroke: u32) -> u32 {
+        let mut root = stroke;
+        while self.parents[root as usize] != root {
+            let next = self.parents[self.parents[root as usize] as usize];
+            self.parents[root as usize] = next;
+            root = next;
+        }
+        root
+    }
+
+    fn unite(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+}
