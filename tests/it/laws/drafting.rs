@@ -3,6 +3,8 @@
 //! Wires are lines without faces, so a model of wires seen from above is any line drawing; at one
 //! millimeter to the unit its coordinates are millimeters on paper.
 
+use std::collections::HashMap;
+
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::LineSelection;
@@ -171,10 +173,18 @@ fn overlaps(strokes: &Strokes) -> (f64, Vec<DVec2>) {
             })
         })
         .collect();
-    let on_other = samples.iter().filter(|(stroke, along, at, direction)| {
-        samples.iter().any(|(other, other_along, p, q)| {
+    let cell = |p: DVec2| (p / STEP).floor().to_array().map(|x| x as i64);
+    let mut cells: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
+    for (k, sample) in samples.iter().enumerate() {
+        cells.entry(cell(sample.2)).or_default().push(k);
+    }
+    let on_other = samples.iter().filter(|&&(stroke, along, at, direction)| {
+        let [x, y] = cell(at);
+        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [x + i, y + j]));
+        around.filter_map(|near| cells.get(&near)).flatten().any(|&k| {
+            let (other, other_along, p, q) = samples[k];
             let is_far = stroke != other || (along - other_along).abs() > 1.0;
-            is_far && at.distance(*p) <= STEP && direction.perp_dot(*q).abs() < 0.17
+            is_far && at.distance(p) <= STEP && direction.perp_dot(q).abs() < 0.17
         })
     });
     let places: Vec<DVec2> = on_other.map(|sample| sample.2).collect();
@@ -186,14 +196,15 @@ fn overlaps(strokes: &Strokes) -> (f64, Vec<DVec2>) {
 fn hardly_any_ink_lies_on_other_ink_in_views_along_axes_with_hidden_lines() {
     let options = DrawOptions { hidden: HiddenLines::Solid, ..plain() };
     let mut n_overlapping = 0;
-    for seed in 0..12 {
+    for seed in 0..5 {
         let mut rng = Rng(seed);
         let mut model = crate::scenes::Model::default();
         for _ in 0..4 {
-            // Long lines: ends that touch count too, by the distance of samples.
-            let low = rng.point(0, 20).map(|c| 8.0 * c);
-            let size = [1, 1, 1].map(|least| 8.0 * rng.integer(least, 12));
-            model.add_box(low, [0, 1, 2].map(|i| low[i] + size[i]));
+            // Long lines, since ends that touch count too; near each other, but hardly ever equal.
+            let mut near = |c: f64| 8.0 * c + 0.001 * rng.integer(-60, 60);
+            let low = [4, 3, 9].map(|c| near(f64::from(c)));
+            let high = [12, 15, 20].map(|c| near(f64::from(c)));
+            model.add_box(low, high);
         }
         let mut soup = PolygonSoup::default();
         soup.positions.extend(model.positions.iter().map(|&p| DVec3::from_array(p)));
