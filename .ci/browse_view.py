@@ -178,8 +178,10 @@ def check_saving(page, program, models, downloads):
         WebDriverWait(page.driver, 30).until(lambda _: page.by("saved").text.startswith("Saved"))
         WebDriverWait(page.driver, 30).until(lambda _: not page.by("save").get_property("disabled"))
         name = page.by("saved").text.removeprefix("Saved ")
-        shown = command.rsplit(" ", 1)[0] + " " + name
+        shown = page.by("command").text
+        assert shlex.split(shown)[-1] == name, shown
         assert downloaded(downloads, name) == written(program, models, shown), shown
+    Select(page.by("format")).select_by_value("svg")
 
 
 def check_zooming(page, program, models):
@@ -222,7 +224,9 @@ def check_picture(page, program, models):
     white = Image.new("RGBA", canvas.size, "white")
     canvas = Image.alpha_composite(white, canvas).convert("L")
     canvas = canvas.crop((round(left), round(top), round(left + scale * width), round(top + scale * height)))
-    command = page.by("command").text.removesuffix(".svg") + ".png"
+    Select(page.by("format")).select_by_value("png")
+    command = page.by("command").text
+    Select(page.by("format")).select_by_value("svg")
     drawn = Image.open(io.BytesIO(written(program, models, command))).convert("L").resize(canvas.size, Image.LANCZOS)
     soft = [image.filter(ImageFilter.GaussianBlur(2)) for image in (canvas, drawn)]
     difference = ImageStat.Stat(ImageChops.difference(*soft)).mean[0] / 255

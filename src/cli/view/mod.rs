@@ -14,6 +14,7 @@
 mod composed;
 mod controls;
 mod declared;
+mod facts;
 mod fault;
 mod guard;
 mod patient;

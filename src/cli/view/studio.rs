@@ -7,17 +7,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::{ArgMatches, Command, FromArgMatches};
 use glam::DVec3;
-use hiddenline::stages::camera::{Camera, Projection};
-use hiddenline::stages::page::{Page, PageOptions, PenRole, PenRule, Placement};
-use hiddenline::stages::plot::Plot;
-use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::write::Format;
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::composed::{Composed, Options};
 use super::controls::controls;
 use super::declared::{DRAW, is_on_page, option};
+use super::facts::{PenFacts, Placed, extend, facts, pens_by_kind, pens_of};
 use super::fault::Fault;
 use super::pick::nearest_hit;
 use super::wire;
@@ -77,14 +73,6 @@ pub(super) struct Asked {
 pub(super) struct Answer {
     pub(super) octets: Vec<u8>,
     pub(super) facts: Value,
-}
-
-#[derive(Serialize)]
-struct PenFacts<'a> {
-    number: u32,
-    name: &'a str,
-    width: f64,
-    color: &'a str,
 }
 
 impl Studio {
@@ -393,13 +381,6 @@ impl Studio {
     }
 }
 
-/// Where a drawing is seen from, and where it is on paper.
-struct Placed {
-    camera: Camera,
-    page: PageOptions,
-    sheet: Page,
-}
-
 impl Job {
     fn output(&self) -> &OutputOptions {
         match self {
@@ -422,78 +403,4 @@ fn described(values: &[OsString]) -> Value {
         [value] => Value::String(value.to_string_lossy().into_owned()),
         values => values.iter().map(|value| value.to_string_lossy()).collect(),
     }
-}
-
-/// What both kinds of answers tell.
-fn facts(seq: u32, placed: &Placed, pens: &[PenFacts]) -> Value {
-    let Placed { camera, page, sheet } = placed;
-    let (projection, fov) = match camera.projection() {
-        Projection::Perspective { fov_deg, .. } => ("perspective", Some(fov_deg)),
-        Projection::Orthographic => ("orthographic", None),
-    };
-    let (placement, value) = match page.placement {
-        Placement::Fit => ("fit", None),
-        Placement::Scale { mm_per_unit } => ("scale", Some(mm_per_unit)),
-        Placement::FieldOfView => ("fov", None),
-        Placement::ViewHeight { model_units } => ("height", Some(model_units)),
-    };
-    let map = sheet.page_from_image;
-    json!({
-        "seq": seq,
-        "exact": false,
-        "camera": {
-            "eye": camera.eye().to_array(),
-            "target": camera.target().to_array(),
-            "up": camera.up().to_array(),
-            "projection": projection,
-            "fov": fov,
-        },
-        "page": {
-            "width": sheet.paper.width_mm,
-            "height": sheet.paper.height_mm,
-            "margin": sheet.margin_mm,
-            "description": sheet.paper.description(),
-            "placement": placement,
-            "value": value,
-            "scale": map.matrix2.x_axis.x,
-            "origin": map.translation.to_array(),
-        },
-        "pens": pens,
-    })
-}
-
-fn extend(facts: &mut Value, more: Value) {
-    if let (Value::Object(facts), Value::Object(more)) = (facts, more) {
-        facts.extend(more);
-    }
-}
-
-fn pens_of(plot: &Plot) -> Vec<PenFacts<'_>> {
-    let facts = plot.layers.iter().map(|layer| PenFacts {
-        number: layer.number,
-        name: &layer.name,
-        width: layer.pen.width_mm,
-        color: &layer.pen.color,
-    });
-    facts.collect()
-}
-
-/// The pens of visible lines, and for each kind of line which of them draws it.
-fn pens_by_kind(rules: &[PenRule], width_mm: f64) -> (Vec<PenRule>, Vec<u32>) {
-    let usual = || PenRule {
-        drawn: PenRole::Visible,
-        number: 1,
-        pen: hiddenline::stages::plot::Pen { width_mm, ..Default::default() },
-        controls: Default::default(),
-    };
-    let of = |role| rules.iter().rev().find(|rule| rule.drawn == role);
-    let mut pens = vec![of(PenRole::Visible).cloned().unwrap_or_else(usual)];
-    let by_kind = StrokeKind::ALL.map(|kind| match of(PenRole::Kind(kind)) {
-        Some(rule) => {
-            pens.push(rule.clone());
-            pens.len() as u32 - 1
-        }
-        None => 0,
-    });
-    (pens, by_kind.to_vec())
 }

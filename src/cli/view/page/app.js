@@ -247,7 +247,7 @@ class App {
       `${strokes} stroke${strokes === 1 ? "" : "s"} · ${meters.toFixed(1)} m · ${hours} · ${lifts} lift${lifts === 1 ? "" : "s"}`;
     by("stats").title = `${facts.summary}\nDrawn in ${seconds.toFixed(2)} s`;
     this.command = facts.command;
-    by("command").textContent = facts.command;
+    this.showCommand();
     const notes = [...facts.warnings, ...facts.hints];
     by("notes").replaceChildren(...notes.map((text) => make("li", { textContent: text })));
     by("notes").hidden = !notes.length;
@@ -321,10 +321,14 @@ class App {
     }
   }
 
+  /** The command for the format that is chosen: formats are called as their extensions. */
+  showCommand() {
+    by("command").textContent = this.command?.replace(/\.svg('?)$/, `.${by("format").value}$1`) ?? "";
+  }
+
   async copy() {
-    const command = this.command.replace(/\.svg$/, `.${by("format").value === "gcode" ? "gcode" : by("format").value}`);
     try {
-      await navigator.clipboard.writeText(command);
+      await navigator.clipboard.writeText(by("command").textContent);
       by("saved").textContent = "Copied";
     } catch {
       getSelection().selectAllChildren(by("command"));
@@ -404,7 +408,11 @@ class App {
     by("copy").addEventListener("click", () => this.copy());
     by("play").addEventListener("click", () => this.play());
     by("order").addEventListener("input", () => this.seek());
-    by("stop").addEventListener("click", () => this.exactRequest?.abort());
+    by("stop").addEventListener("click", () => {
+      this.isExactDue = false;
+      this.exactRequest?.abort();
+    });
+    by("format").addEventListener("change", () => this.showCommand());
     new ResizeObserver(() => this.frame()).observe(by("paper"));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.frame());
     this.listenToDrops();

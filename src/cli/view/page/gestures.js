@@ -18,6 +18,8 @@ function listenToGestures(canvas, act) {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
     const isPan = event.shiftKey || event.button === 2 || event.button === 1;
+    // The middle button would scroll.
+    if (event.button === 1) event.preventDefault();
     start = { x: event.offsetX, y: event.offsetY, isPan, view: act.begin() };
   });
 
