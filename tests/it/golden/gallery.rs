@@ -53,6 +53,9 @@ pictures! {
     benchy_wheel the_wheel_is_up_to_date "../../../examples/benchy_wheel.rs";
     city the_city_is_up_to_date "../../../examples/city.rs";
     fill_spot the_cow_in_inks_is_up_to_date "../../../examples/fill_spot.rs";
+    hatch_ripples the_ripples_are_up_to_date "../../../examples/hatch_ripples.rs";
+    hatch_spot the_hatched_cow_is_up_to_date "../../../examples/hatch_spot.rs";
+    hatch_temple the_temple_is_up_to_date "../../../examples/hatch_temple.rs";
     menger the_sponge_is_up_to_date "../../../examples/menger.rs";
     platonic the_solids_are_up_to_date "../../../examples/platonic.rs";
     spiral_stair the_stair_is_up_to_date "../../../examples/spiral_stair.rs";

@@ -167,6 +167,13 @@ fn a_cube_casts_its_shadow_polygon_on_the_ground() {
     let base = PEN_MM / options.black / 8.0;
     let level = (PEN_MM / coverage / base).log2().round();
     let distance = base * level.exp2();
+    let strokes = hatched(&scene, &camera, &options, mm);
+    let mut places: Vec<f64> =
+        strokes.iter().map(|s| (s.points[0].y - s.points[0].x) / 2f64.sqrt() * mm).collect();
+    places.sort_by(f64::total_cmp);
+    let steps = places.windows(2).map(|pair| (pair[1] - pair[0]) / distance);
+    assert!(steps.clone().all(|step| (step - step.round()).abs() < 1e-6));
+    assert!(steps.filter(|step| step.round() == 1.0).count() > 10);
     let perimeter = (2.0 * side + 2.0 * p.hypot(q)) * mm * 2.0;
     assert!((drawn - area / distance).abs() < perimeter, "{drawn}, {}", area / distance);
     assert!(drawn > 0.9 * area / distance && drawn < 1.1 * area / distance);
@@ -339,4 +346,58 @@ fn numbers_out_of_range_are_refused() {
     let no_pen = HatchPage { pen_width_mm: 0.0, ..large };
     assert_eq!(error(usual.clone(), no_pen), HatchError::PenWidth(0.0));
     assert!(matches!(error(usual, page(1e9)), HatchError::TooMany(_)));
+}
+
+#[test]
+fn hatching_keeps_off_outlines_of_what_is_nearer_but_not_off_its_own() {
+    let square = |from: f64, to: f64, z: f64| {
+        [dvec3(from, from, z), dvec3(to, from, z), dvec3(to, to, z), dvec3(from, to, z)]
+    };
+    let corners = [square(0.0, 10.0, 0.0), square(4.0, 6.0, 3.0)].concat();
+    let scene = Scene::from_faces(&corners, [[0, 1, 2, 3], [4, 5, 6, 7]]).unwrap();
+    let camera = along(DVec3::NEG_Z);
+    let mm = 10.0;
+    let low = camera.image(DVec3::ZERO);
+    let light = LightSource::From(dvec3(-1.0, 0.0, 0.5));
+    let shadows = HatchShadows::Own;
+    for gap_mm in [0.0, 0.5, 2.0] {
+        let options = HatchOptions { light, shadows, gap_mm, ..plain(HatchMethod::Straight) };
+        let strokes = hatched(&scene, &camera, &options, mm);
+        // How far each end is outside the near square, in millimeters; inside is negative.
+        let outside = |p: DVec2| {
+            let d = ((p - low) - 5.0).abs() - 1.0;
+            let beyond = d.max(DVec2::ZERO).length();
+            mm * if beyond > 0.0 { beyond } else { d.max_element() }
+        };
+        let ends: Vec<f64> = strokes.iter().flat_map(|s| s.points).map(|&p| outside(p)).collect();
+        let least = |mut of: Box<dyn FnMut(f64) -> Option<f64>>| {
+            ends.iter().filter_map(|&x| of(x)).fold(f64::INFINITY, f64::min)
+        };
+        let beside = least(Box::new(|x| (x > 1e-9).then_some(x)));
+        let within = least(Box::new(|x| (x <= 1e-9).then_some(-x)));
+        assert!(within < 1e-9, "the near square is hatched up to its own outline: {within}");
+        if gap_mm == 0.0 {
+            assert!(ends.iter().filter(|x| x.abs() < 1e-9).count() > 100);
+        } else {
+            assert!((beside - gap_mm).abs() < 1e-6, "{beside} against {gap_mm}");
+        }
+    }
+}
+
+#[test]
+fn hatching_goes_up_to_a_face_that_goes_on_beside_it() {
+    let square = |from: f64, to: f64, z: f64| {
+        [dvec3(from, 0.0, z), dvec3(to, 0.0, z), dvec3(to, 4.0, z), dvec3(from, 4.0, z)]
+    };
+    // A step of a fifth of a millimeter on paper.
+    let corners = [square(0.0, 4.0, 0.0), square(4.0, 8.0, -0.02)].concat();
+    let scene = Scene::from_faces(&corners, [[0, 1, 2, 3], [4, 5, 6, 7]]).unwrap();
+    let light = LightSource::From(dvec3(-1.0, 0.0, 0.5));
+    let shadows = HatchShadows::Own;
+    let of = |gap_mm: f64| {
+        let options = HatchOptions { light, shadows, gap_mm, ..plain(HatchMethod::Straight) };
+        length(&hatched(&scene, &along(DVec3::NEG_Z), &options, 10.0))
+    };
+    assert_eq!(of(0.5), of(0.0));
+    assert!(of(0.05) < of(0.0), "there it is a step");
 }
