@@ -102,15 +102,26 @@ pub struct OptimizeOptions {
     /// Strokes shorter than this are dropped, and those whose ends are nearer to each other than
     /// this are closed. Zero does neither.
     pub shortest_mm: f64,
+    /// Keep the strokes of a layer where joining would only cut them into more, to save less than
+    /// [`HARDLY_ANY_INK`] of the ink.
+    pub keeps_fewer: bool,
     /// How long to search for a better stroke order.
     pub effort: Effort,
 }
 
+/// The share of the ink for which no stroke need be cut.
+pub const HARDLY_ANY_INK: f64 = 0.01;
+
 impl OptimizeOptions {
-    /// For drawings that were just made: joints are equal points, and ink that deviates by less than
-    /// is written overlaps.
+    /// For drawings that were just made: joints are equal points, ink that deviates by less than is
+    /// written overlaps, and strokes that were joined with care are not cut for nothing.
     pub fn for_drawings() -> Self {
-        Self { join_tolerance_mm: Some(0.0), overlap_mm: OVERLAP_MM, ..Self::default() }
+        Self {
+            join_tolerance_mm: Some(0.0),
+            overlap_mm: OVERLAP_MM,
+            keeps_fewer: true,
+            ..Self::default()
+        }
     }
 
     /// How long to search for a better stroke order.
@@ -155,6 +166,7 @@ impl Default for OptimizeOptions {
             overlap_mm: 0.0,
             simplify_mm: 0.0,
             shortest_mm: 0.0,
+            keeps_fewer: false,
             effort: Effort::Fast,
         }
     }
@@ -225,6 +237,16 @@ fn joined_and_ordered(
             remove_overlaps(&mut graph, options.overlap_mm);
             watch(2.0 * JOINED / 3.0);
             let trails = trails(&graph);
+            let n_strokes = trails.len() + graph.dots.len();
+            let is_kept = options.keeps_fewer
+                && n_strokes > lines.len()
+                && graph.length_mm() > (1.0 - HARDLY_ANY_INK) * lines.length_mm();
+            if is_kept {
+                let kept = simplified(lines.iter().map(|line| (line.to_vec(), None)), options);
+                return order_watched(&kept, options.effort, &mut |share| {
+                    watch(JOINED + (1.0 - JOINED) * share);
+                });
+            }
             let degree = degrees(&graph);
             let strokes = trails.iter().map(|trail| {
                 let points = trail.iter().map(|&v| graph.position(v)).collect();

@@ -471,3 +471,22 @@ fn the_share_done_grows_from_nothing_to_all() {
         }
     }
 }
+
+#[test]
+fn strokes_of_drawings_are_not_cut_for_hardly_any_ink() {
+    // The second stroke runs along the first for a bit.
+    let strokes = |shared: f64| {
+        let mut lines = Polylines::default();
+        lines.push([dvec2(0.0, 0.0), dvec2(100.0, 0.0)]);
+        let (from, to) = (dvec2(40.0, 0.0), dvec2(40.0 + shared, 0.0));
+        lines.push([from + dvec2(0.0, 50.0), from, to, to + dvec2(0.0, 50.0)]);
+        lines
+    };
+    let options = OptimizeOptions { effort: Effort::None, ..OptimizeOptions::for_drawings() };
+    let n = |shared: f64, options: &OptimizeOptions| {
+        optimize_lines(&strokes(shared), None, options).lines.len()
+    };
+    assert_eq!(n(1.0, &options), 2);
+    assert_eq!(n(1.0, &OptimizeOptions { keeps_fewer: false, ..options }), 3);
+    assert_eq!(n(5.0, &options), 3);
+}
