@@ -96,7 +96,8 @@
 //! `draw` runs the stages from a scene to strokes, and `draw::surface` those from a surface. The
 //! page is placed first: it needs only the `extent` of what is drawn, so lengths on paper are known
 //! before any line is chosen. `predicates` make every decision on the way. `engines::image` finds
-//! the face that each pixel shows; `shading::preview` shades it. To read the code, take the modules
+//! the face that each pixel shows; `shading::preview` shades it. `hatch` cuts the faces by families of planes
+//! and asks `engines::edge` twice about each segment: from the eye, and from the light. To read the code, take the modules
 //! in the order of `stages` in `src/lib.rs`: no module uses a later one, and no two files use each
 //! other in a circle. `cargo test --test it laws::layers` checks that.
 //!

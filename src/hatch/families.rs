@@ -8,8 +8,7 @@
 //!
 //! Lines of a family are numbered. Their base distance is an eighth of the least one that the darkest
 //! tone needs on a face square to the viewer, so that slanted faces find lines near enough to each
-//! other. Which of them are drawn where is a matter of [`Rank`]: a darker place keeps every line of a
-//! lighter one.
+//! other. Their ranks say which of them are drawn where: a darker place keeps every line of a lighter one.
 
 use glam::{DVec2, DVec3};
 
@@ -348,8 +347,8 @@ impl Family {
 /// bounds how dense lines can be.
 const LEAST_FACING: f64 = 1e-3;
 
-/// How late a line begins to be drawn as it gets darker: in proportion to the density of lines at
-/// which half of them, on the average, are drawn.
+/// When a line starts to be drawn as it gets darker: a line is drawn where the part of all lines that the
+/// tone needs is above its rank, from 0 for the first line to 1 for the last.
 ///
 /// With [`HatchLevels::Halving`] a line whose number is divisible by 2ᵛ and not by more has rank
 /// 2⁻ᵛ / (2 ln 2): the number of lines that are drawn halves at once, where that is nearest to what is

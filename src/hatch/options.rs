@@ -199,7 +199,7 @@ impl HatchOptions {
         Self { ground: Some(ground), ..self }
     }
 
-    /// Says whether the numbers make sense, for a pen of some width.
+    /// Checks that all numbers are in range.
     pub(super) fn check(&self, page: &HatchPage) -> Result<(), HatchError> {
         let is_part = |x: f64| (0.0..=1.0).contains(&x);
         let is_positive_part = |x: f64| x > 0.0 && x <= 1.0;
@@ -272,15 +272,15 @@ pub enum HatchError {
     White(f64),
     /// A number out of range.
     #[error(
-        "the darkest places must be covered by more than 0 and at most 1, not {0}: lines cannot be \
-         nearer to each other than the pen is wide"
+        "the ink must cover more than 0 and at most 1 of the darkest places, not {0}: lines cannot be \
+         closer together than the pen is wide"
     )]
     Black(f64),
     /// A number out of range.
     #[error("the tone of shadows must be from 0 to 1, not {0}")]
     Ambient(f64),
     /// Too many angles.
-    #[error("there can be at most {MOST_FAMILIES} families of hatch lines, not {0}")]
+    #[error("hatching takes at most {MOST_FAMILIES} families of lines, not {0}")]
     Families(usize),
     /// An angle is not finite.
     #[error("angles of hatch lines must be finite")]
@@ -297,7 +297,7 @@ pub enum HatchError {
     /// The pen has no width.
     #[error("hatching needs the width of the pen, above 0, not {0} mm")]
     PenWidth(f64),
-    /// More pieces than memory is made for.
+    /// More pieces than fit in memory.
     #[error(
         "there would be more than {0} pieces of hatch lines; draw the model smaller, or with a wider pen"
     )]

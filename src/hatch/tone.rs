@@ -8,7 +8,7 @@
 //!
 //! Families share the coverage from light to dark: up to `black / n` only the first one draws, above
 //! that it stays and the second one adds what is missing, and so on. All are linear in the tone, so a
-//! line begins and ends where linear functions cross. Rounded: tone is no matter of visibility.
+//! line begins and ends where linear functions cross. All this is rounded: tone does not decide visibility.
 
 use glam::DVec3;
 

@@ -82,7 +82,7 @@ mod tests {
     use glam::dvec3;
 
     #[test]
-    fn a_vertex_on_the_plane_is_told_from_one_just_below() {
+    fn a_vertex_on_the_plane_differs_from_one_just_below() {
         let plane = FreePlane { normal: dvec3(0.1, 0.2, 0.3), offset: 0.0 };
         let on = dvec3(2.0, -1.0, 0.0);
         assert_eq!(plane.side(on), Sign::Zero);

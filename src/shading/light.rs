@@ -7,8 +7,8 @@
 //!            ●─┴────
 //! ```
 //!
-//! Lambert's law. The light is far away, as the sun is, or a lamp at a point. What it reaches is what a
-//! camera in its place sees: [`Light::camera`].
+//! Lambert's law. The light is far away, like the sun, or a lamp at a point. It reaches what a camera in its
+//! place sees: [`Light::camera`].
 
 use glam::DVec3;
 use thiserror::Error;

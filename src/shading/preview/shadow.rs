@@ -22,7 +22,7 @@ const TRIANGLES_PER_CELL: f64 = 2.0;
 /// Most cells along a side.
 const MOST_CELLS: f64 = 2048.0;
 
-/// What is no nearer to the light than this, as a part of the scene's depth, does not hide from it.
+/// A triangle casts a shadow on points at least this far behind it, as a part of the scene's depth.
 const CONTACT: f64 = 1e-9;
 
 /// Triangles by what the light sees of them.

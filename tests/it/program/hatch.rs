@@ -78,7 +78,7 @@ fn exact_json_has_every_line_with_whether_it_is_lit() {
 }
 
 #[test]
-fn mistakes_are_told_with_what_mends_them() {
+fn mistakes_are_reported_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let draw = |more: &[&str]| run(folder.path(), &[&["draw", "cube.obj"], more].concat());
     assert_fails(

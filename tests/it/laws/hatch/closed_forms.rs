@@ -92,7 +92,7 @@ const METHODS: [HatchMethod; 2] = [HatchMethod::Sections, HatchMethod::Straight]
 
 #[test]
 fn a_sphere_in_its_own_light_has_the_length_of_the_integral() {
-    let (scene, radius) = (sphere(40), 43.3);
+    let (scene, radius) = (sphere(32), 43.3);
     let forward = dvec3(0.3, 1.0, -0.4);
     // Where the number of lines halves at once, darkness is right on the average over all tones only.
     let exactness = [(HatchLevels::Continuous, 0.02), (HatchLevels::Halving, 0.04)];
@@ -107,7 +107,7 @@ fn a_sphere_in_its_own_light_has_the_length_of_the_integral() {
 
 #[test]
 fn a_sphere_in_the_light_from_aside_has_the_length_of_the_integral() {
-    let (scene, radius) = (sphere(40), 43.3);
+    let (scene, radius) = (sphere(32), 43.3);
     let forward = DVec3::Y;
     for cosine in [0.6, -0.3_f64] {
         let angle = cosine.acos();

@@ -30,7 +30,7 @@ fn crossing([a, b]: Segment, [p, q]: Segment) -> Option<[f64; 2]> {
 #[test]
 fn light_turns_to_shade_exactly_at_outlines() {
     let (mut n_borders, mut n_outlines, mut n_crossed) = (0, 0, 0);
-    for seed in 0..number_of_scenes(120) {
+    for seed in 0..number_of_scenes(60) {
         let scene = random(seed);
         let mut rng = Rng(seed + 5);
         let towards = dvec3(rng.integer(-3, 3), rng.integer(-3, 3), rng.integer(1, 4));
@@ -103,7 +103,7 @@ fn light_turns_to_shade_exactly_at_outlines() {
         }
     }
     eprintln!("{n_borders} borders, {n_outlines} outlines, {n_crossed} pairs");
-    assert!(n_borders > 50 && n_outlines > 50 && n_crossed > 1000);
+    assert!(n_borders > 20 && n_outlines > 20 && n_crossed > 500);
 }
 
 #[test]

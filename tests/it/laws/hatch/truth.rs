@@ -115,12 +115,12 @@ fn compared(method: HatchMethod, n: u64) {
 
 #[test]
 fn sections_are_seen_and_lit_as_exact_fractions_say() {
-    compared(HatchMethod::Sections, 40);
+    compared(HatchMethod::Sections, 24);
 }
 
 #[test]
 fn straight_lines_are_seen_and_lit_as_exact_fractions_say() {
-    compared(HatchMethod::Straight, 40);
+    compared(HatchMethod::Straight, 24);
 }
 
 #[test]
