@@ -81,7 +81,21 @@ impl Job {
         mut run: Run,
     ) -> Result<(), Box<dyn Error>> {
         let camera = self.view.camera(live.bounds())?;
-        let (drawing, sheet) = strokes(self, &live.scene, camera, live.notes.clone(), &mut run)?;
+        let mut notes = live.notes.clone();
+        let refined = match &self.smoothing {
+            Some(smoothing) => {
+                // How fine depends on the view, so this scene is not kept.
+                run.progress.stage("smoothing");
+                let seconds = &mut run.stats.seconds.topology;
+                Some(timed(seconds, || -> Result<Scene, Box<dyn Error>> {
+                    let mesh = live.scene.mesh().clone();
+                    Ok(live.needs.scene(smoothing.refine(mesh, &camera, &mut notes)?))
+                })?)
+            }
+            None => None,
+        };
+        let scene = refined.as_ref().unwrap_or(&live.scene);
+        let (drawing, sheet) = strokes(self, scene, camera, notes, &mut run)?;
         run.draw(&drawing, &sheet, plot_options(self), &OptimizeOptions::for_drawings())
     }
 

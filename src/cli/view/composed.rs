@@ -81,7 +81,8 @@ impl Composed {
             let arg = option(command, name).filter(|arg| is_on_page(arg));
             let arg = arg.ok_or_else(|| format!("`{name}` is no option that a page can set"))?;
             let Some(values) = texts(name, value)? else { continue };
-            if values.is_empty() == arg.get_action().takes_values() {
+            let (takes, needs) = (arg.get_action().takes_values(), !is_optional(arg));
+            if values.is_empty() && takes && needs || !values.is_empty() && !takes {
                 return Err(format!("`{name}` has no value, or one where it takes none"));
             }
             composed.options.insert(name.clone(), values.into_iter().map(OsString::from).collect());
@@ -164,6 +165,11 @@ fn rejoined(arg: &Arg, values: Vec<OsString>) -> Vec<OsString> {
 /// Whether an option takes several values each time.
 pub(super) fn takes_several(arg: &Arg) -> bool {
     arg.get_num_args().is_some_and(|range| range.max_values() > 1)
+}
+
+/// Whether an option may stand without a value.
+pub(super) fn is_optional(arg: &Arg) -> bool {
+    arg.get_num_args().is_some_and(|range| range.min_values() == 0)
 }
 
 /// What a page says of one option; `None` if it is not given.

@@ -4,7 +4,7 @@ use clap::builder::StyledStr;
 use clap::{Arg, ArgAction, Command};
 use serde::Serialize;
 
-use super::composed::takes_several;
+use super::composed::{is_optional, takes_several};
 use super::declared::is_on_page;
 
 /// One option as the page shows it.
@@ -18,6 +18,8 @@ pub(super) struct Control {
     /// All of its help.
     more: String,
     kind: Kind,
+    /// It may also stand without a value, just switched on.
+    optional: bool,
     /// What a value is called in `--help`.
     value_name: String,
     choices: Vec<Choice>,
@@ -80,6 +82,7 @@ fn control(arg: &Arg) -> Control {
         more: arg.get_long_help().map_or_else(|| help.clone(), StyledStr::to_string),
         help,
         kind: kind(arg, !choices.is_empty()),
+        optional: arg.get_action().takes_values() && is_optional(arg),
         value_name: arg.get_value_names().unwrap_or_default().join(" "),
         choices,
         default: if arg.get_action().takes_values() { defaults.join(",") } else { String::new() },

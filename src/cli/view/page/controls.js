@@ -62,7 +62,7 @@ class Controls {
     const text = `${more}\n\n--${name}`;
     const words = name.replaceAll("-", " ");
     const label = words.length > 1 ? words[0].toUpperCase() + words.slice(1) : words;
-    const put = (value) => { this.set(name, value); };
+    const put = (value) => { this.set(name, control.optional && value === "on" ? true : value); };
     let input, content;
     const attributes = { id, title: text, "aria-describedby": `${id}-error` };
     if (kind === "flag") {
@@ -70,7 +70,8 @@ class Controls {
       content = make("label", { className: "flag", title: text }, input, ` ${label}`);
     } else if (kind === "choice") {
       const choices = control.choices.map(({ name, help }) => make("option", { value: name, textContent: name, title: help }));
-      const none = control.default ? [] : [make("option", { value: "", textContent: "automatic" })];
+      const none = control.default ? [] : [make("option", { value: "", textContent: control.optional ? "off" : "automatic" })];
+      if (control.optional) none.push(make("option", { value: "on", textContent: "on" }));
       input = make("select", { onchange: () => put(input.value), ...attributes }, ...none, ...choices);
     } else if (kind === "choices") {
       input = make("fieldset", { ...attributes });
@@ -86,7 +87,7 @@ class Controls {
       input = make(isLong ? "textarea" : "input", {
         spellcheck: false, autocomplete: "off", ...(isLong ? { rows: 1 } : { type: "text" }),
         inputMode: kind === "number" ? "decimal" : "text",
-        placeholder: control.default || (isLong ? `${control.value_name}, one a line` : control.value_name.toLowerCase()),
+        placeholder: (control.optional && `on, or ${control.value_name.toLowerCase()}`) || control.default || (isLong ? `${control.value_name}, one a line` : control.value_name.toLowerCase()),
         onchange: () => put(isLong ? input.value.split("\n").map((line) => line.trim()).filter(Boolean) : input.value.trim()),
         ...attributes,
       });
@@ -122,7 +123,7 @@ class Controls {
   /** Shows what is set. */
   refresh() {
     for (const [name, { control, input }] of this.rows) {
-      const value = this.values[name];
+      const value = control.optional && this.values[name] === true ? "on" : this.values[name];
       const shown = value ?? "";
       if (control.kind === "flag") input.checked = value === true;
       else if (control.kind === "choice") input.value = value ?? control.default;

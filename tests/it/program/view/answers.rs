@@ -328,3 +328,23 @@ fn a_dropped_model_is_shown_and_a_broken_one_is_not() {
     fs::write(viewer.path().join("tétra .obj"), tetrahedron).unwrap();
     assert!(saved == written_by(viewer.path(), &shown), "{shown}");
 }
+
+#[test]
+fn curved_and_hatched_drawings_are_saved_as_their_commands_draw_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let models = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/models");
+    fs::copy(models.join("benchy_wheel.stl"), folder.path().join("wheel.stl")).unwrap();
+    let viewer = Viewer::start_in(folder, &["wheel.stl"]);
+    for options in
+        [json!({ "smooth": "40" }), json!({ "hatch": "straight" }), json!({ "hatch": true })]
+    {
+        let mut asked = exact(options.clone());
+        let before = viewer.draw(&exact(json!({}))).facts();
+        let facts = viewer.draw(&asked).facts();
+        assert_ne!((&before["strokes"], &before["meters"]), (&facts["strokes"], &facts["meters"]));
+        asked = json!({ "camera": {}, "options": options, "format": "svg" });
+        let saved = viewer.post("/api/file", asked.to_string().as_bytes()).body;
+        let shown = facts["command"].as_str().unwrap();
+        assert!(saved == written_by(viewer.path(), shown), "{shown}");
+    }
+}
