@@ -1,8 +1,8 @@
 //! From a scene and a camera to strokes, stage by stage.
 
-pub mod draft;
 pub mod meshed;
 pub mod surface;
+pub mod turning;
 
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain, draft};

@@ -19,7 +19,7 @@ pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLin
 
 use self::grid::{draw_grid, grid_to_draw};
 use self::smoothness::{SmoothSurface, sample};
-use super::draft::{Draft, draft_surface};
+use super::turning::{TurningLines, surface_turning_lines};
 use super::{DrawOutput, MeshSize, meshed};
 use crate::axes::{axes, missing};
 use crate::camera::framing::View;
@@ -255,26 +255,29 @@ fn lined(
     Ok(LinedScene { scene, lines: drawn })
 }
 
-/// The lines of a surface as it is sampled, ready to be drafted from any number of views, and its
+/// The lines of a surface as it is sampled, ready for any number of views while it is turned, and its
 /// lowest and highest corner.
 ///
 /// # Errors
 /// See [`SurfaceError`].
-pub fn for_drafts(surface: &Surface, lines: &SurfaceLines) -> Result<DraftSurface, SurfaceError> {
+pub fn for_turning(
+    surface: &Surface,
+    lines: &SurfaceLines,
+) -> Result<TurningSurface, SurfaceError> {
     let sampled = surface.sample(1)?;
     let lined = lined(&sampled, lines, lines.every)?;
-    Ok(DraftSurface { lined, bounds: sampled.bounds(), z_factor: sampled.z_factor() })
+    Ok(TurningSurface { lined, bounds: sampled.bounds(), z_factor: sampled.z_factor() })
 }
 
-/// A surface made ready to be drafted.
+/// A surface made ready to be turned.
 #[derive(Debug, Clone)]
-pub struct DraftSurface {
+pub struct TurningSurface {
     lined: LinedScene,
     bounds: (DVec3, DVec3),
     z_factor: f64,
 }
 
-impl DraftSurface {
+impl TurningSurface {
     /// The triangles.
     pub fn scene(&self) -> &Scene {
         &self.lined.scene
@@ -284,20 +287,20 @@ impl DraftSurface {
     ///
     /// # Errors
     /// The view makes no camera.
-    pub fn draft(
+    pub fn lines(
         &self,
         view: &View,
         lines: &SurfaceLines,
-    ) -> Result<(Draft, Camera, Extent), SurfaceError> {
+    ) -> Result<(TurningLines, Camera, Extent), SurfaceError> {
         let camera = view.camera(self.bounds)?;
-        let mut draft = draft_surface(&self.lined, &camera, &meshed_options(lines));
+        let mut visible = surface_turning_lines(&self.lined, &camera, &meshed_options(lines));
         let mut extent = self.lined.scene.extent(&camera);
         if let Some(titles) = &lines.axes {
             let around = axes(&extent, self.bounds, self.z_factor, &camera, titles);
-            draft.push_pane(&around, &camera);
+            visible.push_pane(&around, &camera);
             extent = extent.union(around.extent(&camera));
         }
-        Ok((draft, camera, extent))
+        Ok((visible, camera, extent))
     }
 }
 

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use glam::DVec3;
 use hiddenline::stages::camera::Camera;
-use hiddenline::stages::draw::draft::{Draft, draft};
+use hiddenline::stages::draw::turning::{TurningLines, turning_lines};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
 use hiddenline::stages::page::{PageOptions, PlotOptions};
@@ -24,9 +24,9 @@ pub(in crate::cli) struct Live {
     notes: Notes,
 }
 
-/// A draft, and the sheet that it is on.
+/// What is shown while turning, and the sheet that it is on.
 pub(in crate::cli) struct Turned {
-    pub(in crate::cli) draft: Draft,
+    pub(in crate::cli) lines: TurningLines,
     pub(in crate::cli) camera: Camera,
     pub(in crate::cli) page: PageOptions,
     pub(in crate::cli) sheet: hiddenline::stages::page::Page,
@@ -108,8 +108,8 @@ impl Job {
     /// The visible lines of a scene as they are found quickly. It need not have all that the options ask for.
     pub(in crate::cli) fn turned(&self, live: &Live) -> Result<Turned, Box<dyn Error>> {
         let PlacedPage { camera, page: sheet, options: page, .. } = self.sheet(live)?;
-        let draft = draft(&live.scene, &camera, &self.draw);
-        Ok(Turned { draft, camera, page, sheet, plot: plot_options(self) })
+        let lines = turning_lines(&live.scene, &camera, &self.draw);
+        Ok(Turned { lines, camera, page, sheet, plot: plot_options(self) })
     }
 }
 

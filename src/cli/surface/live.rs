@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use hiddenline::stages::draw::surface::{DraftSurface, for_drafts};
+use hiddenline::stages::draw::surface::{TurningSurface, for_turning};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::page::Page;
 use hiddenline::stages::surface::Surface;
@@ -17,8 +17,8 @@ use crate::cli::paper::Run;
 pub(in crate::cli) struct LiveSurface {
     surface: Surface,
     warnings: Vec<String>,
-    /// For drafts, once one was asked for, with the lines that it is for.
-    drafts: Option<(String, DraftSurface)>,
+    /// For turning, once that was asked for, with the lines that it is for.
+    turning: Option<(String, TurningSurface)>,
 }
 
 impl Job {
@@ -34,7 +34,7 @@ impl Job {
         run.progress.stage("reading");
         let mut warnings = Vec::new();
         let surface = timed(&mut run.stats.seconds.read, || self.sheets.read(&mut warnings))?;
-        Ok(LiveSurface { surface, warnings, drafts: None })
+        Ok(LiveSurface { surface, warnings, turning: None })
     }
 
     /// Draws a surface and ends the run.
@@ -57,22 +57,22 @@ impl Job {
     /// The visible lines of a surface as they are found quickly, as it is sampled.
     pub(in crate::cli) fn turned(&self, live: &mut LiveSurface) -> Result<Turned, Box<dyn Error>> {
         let key = format!("{:?}", self.lines);
-        if live.drafts.as_ref().is_none_or(|(known, _)| *known != key) {
-            let drafts = for_drafts(&live.surface, &self.lines);
-            live.drafts = Some((key, drafts.map_err(|error| failed(self, &error))?));
+        if live.turning.as_ref().is_none_or(|(known, _)| *known != key) {
+            let turning = for_turning(&live.surface, &self.lines);
+            live.turning = Some((key, turning.map_err(|error| failed(self, &error))?));
         }
-        let Some((_, drafts)) = &live.drafts else { return Err("no surface".into()) };
+        let Some((_, turning)) = &live.turning else { return Err("no surface".into()) };
         let view = self.view.framing()?;
-        let drawn = drafts.draft(&view, &self.lines);
-        let (draft, camera, extent) = drawn.map_err(|error| failed(self, &error))?;
+        let drawn = turning.lines(&view, &self.lines);
+        let (lines, camera, extent) = drawn.map_err(|error| failed(self, &error))?;
         let sheet = Page::place(&extent, &camera, &self.page)?;
-        Ok(Turned { draft, camera, page: self.page, sheet, plot: plot_options(self) })
+        Ok(Turned { lines, camera, page: self.page, sheet, plot: plot_options(self) })
     }
 }
 
 impl LiveSurface {
-    /// The triangles, once a draft was made.
+    /// The triangles, once it was turned.
     pub(in crate::cli) fn scene(&self) -> Option<&Scene> {
-        self.drafts.as_ref().map(|(_, drafts)| drafts.scene())
+        self.turning.as_ref().map(|(_, turning)| turning.scene())
     }
 }

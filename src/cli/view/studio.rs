@@ -220,7 +220,7 @@ impl Studio {
         if self.key != self.key_of(&composed) {
             self.ready(&composed, &job, &mut Kept::default(), Box::new(|_, _| ()))?;
         }
-        let Turned { draft, camera, page, sheet, plot } = match (&job, &mut self.subject) {
+        let Turned { lines, camera, page, sheet, plot } = match (&job, &mut self.subject) {
             (Job::Draw(job), Subject::Scene(live)) => job.turned(live)?,
             (Job::Surface(job), Subject::Surface(live)) => job.turned(live)?,
             _ => return Err(Fault::of("nothing is shown")),
@@ -237,7 +237,7 @@ impl Studio {
             .collect();
         let facts = facts(asked.seq, &Placed { camera, page, sheet }, &pens);
         let pen = |kind: u32| by_kind.get(kind as usize).copied().unwrap_or(0);
-        Ok(Answer { octets: wire::draft(&draft, asked.seq, pen), facts })
+        Ok(Answer { octets: wire::draft(&lines, asked.seq, pen), facts })
     }
 
     /// The content of a file: what the command that is shown would write.

@@ -11,7 +11,7 @@
 //! An exact drawing has points on the page, in millimeters from the upper left corner. A draft has points
 //! in space, in model units relative to the camera's target.
 
-use hiddenline::stages::draw::draft::Draft;
+use hiddenline::stages::draw::turning::TurningLines;
 use hiddenline::stages::plot::Plot;
 
 const MAGIC: [u8; 4] = *b"HLV1";
@@ -39,9 +39,9 @@ pub(super) fn plot(plot: &Plot, seq: u32) -> Vec<u8> {
 }
 
 /// A draft: one group for strokes that one pen draws in a row. `pen` is called with the number of a kind.
-pub(super) fn draft(draft: &Draft, seq: u32, pen: impl Fn(u32) -> u32) -> Vec<u8> {
+pub(super) fn draft(lines: &TurningLines, seq: u32, pen: impl Fn(u32) -> u32) -> Vec<u8> {
     let mut groups: Vec<[u32; 4]> = Vec::new();
-    for (stroke, (kind, _)) in (0..).zip(draft.iter()) {
+    for (stroke, (kind, _)) in (0..).zip(lines.iter()) {
         let kind = kind as u32;
         if groups.last().is_none_or(|last| last[1] != kind) {
             groups.push([pen(kind), kind, 0, stroke]);
@@ -49,10 +49,10 @@ pub(super) fn draft(draft: &Draft, seq: u32, pen: impl Fn(u32) -> u32) -> Vec<u8
     }
     // Strokes of many kinds may alternate; then only the pen counts.
     groups.dedup_by_key(|group| group[0]);
-    let mut octets = Octets::new(seq, IN_SPACE, groups.len(), draft.len(), draft.n_points());
+    let mut octets = Octets::new(seq, IN_SPACE, groups.len(), lines.len(), lines.n_points());
     groups.into_iter().for_each(|group| octets.words(group));
-    octets.starts(draft.iter().map(|(_, points)| points.len()));
-    for point in draft.iter().flat_map(|(_, points)| points) {
+    octets.starts(lines.iter().map(|(_, points)| points.len()));
+    for point in lines.iter().flat_map(|(_, points)| points) {
         octets.numbers(point.to_array());
     }
     octets.bytes

@@ -1,5 +1,5 @@
-//! Drafts: the visible lines of a view in space, found quickly, so that they can be turned a little
-//! further before the next draft is there.
+//! Lines for turning: the visible lines of a view in space, found quickly, so that they can be turned a
+//! little further before the next ones are there.
 //!
 //! ```text
 //!   eye 1 ●╌╌╌╌╌╌╌╌┐                    What eye 1 sees is found as for a drawing. Eye 2 is shown the
@@ -25,12 +25,12 @@ use crate::surface::LinedScene;
 
 /// Visible lines as polylines in space, in model units relative to the camera's target.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Draft {
+pub struct TurningLines {
     points: Vec<DVec3>,
     heads: Vec<(StrokeKind, u32)>,
 }
 
-impl Draft {
+impl TurningLines {
     /// The polylines, each with the kind of its first piece.
     pub fn iter(&self) -> impl Iterator<Item = (StrokeKind, &[DVec3])> {
         self.heads.iter().scan(0, |start, &(kind, end)| {
@@ -77,7 +77,7 @@ impl Draft {
 /// Finds the lines of `scene` that `camera` sees. The kinds of line, the crease angle, the engine and
 /// the contact tolerance of `options` count; lines are joined within their kind only if they are to be
 /// kept apart. Hidden lines are left out.
-pub fn draft(scene: &Scene, camera: &Camera, options: &DrawOptions) -> Draft {
+pub fn turning_lines(scene: &Scene, camera: &Camera, options: &DrawOptions) -> TurningLines {
     let view = ViewedScene::new(scene, camera, options.lines, options.crease_deg);
     let settings =
         VisibilityOptions { count_layers: false, find_doubled: false, ..options.visibility(scene) };
@@ -105,7 +105,11 @@ pub fn draft(scene: &Scene, camera: &Camera, options: &DrawOptions) -> Draft {
 }
 
 /// The same for a surface.
-pub fn draft_surface(surface: &LinedScene, camera: &Camera, options: &MeshedOptions) -> Draft {
+pub fn surface_turning_lines(
+    surface: &LinedScene,
+    camera: &Camera,
+    options: &MeshedOptions,
+) -> TurningLines {
     let view = meshed::view(surface, camera, options);
     let by_horizons = if options.engine == LineEngine::Auto { tin::solve(&view) } else { None };
     let visibility: Visibility = match by_horizons {
@@ -136,7 +140,7 @@ struct Piece {
 const NONE: u32 = u32::MAX;
 
 /// Joins pieces two by two where they meet at a point of the scene, in their order. O(points + pieces).
-fn joined(view: &ViewedScene, pieces: &[Piece], apart_by_kind: bool) -> Draft {
+fn joined(view: &ViewedScene, pieces: &[Piece], apart_by_kind: bool) -> TurningLines {
     let selected = view.selected();
     let kind = |piece: u32| selected[pieces[piece as usize].number as usize].kind;
     let mut links = vec![NONE; 2 * pieces.len()];
@@ -156,7 +160,7 @@ fn joined(view: &ViewedScene, pieces: &[Piece], apart_by_kind: bool) -> Draft {
             }
         }
     }
-    let mut draft = Draft { points: Vec::with_capacity(pieces.len()), heads: Vec::new() };
+    let mut lines = TurningLines { points: Vec::with_capacity(pieces.len()), heads: Vec::new() };
     let camera = view.camera();
     let (frame, distance) = (camera.frame(), camera.forward().length());
     let at = |end: u32| {
@@ -167,9 +171,9 @@ fn joined(view: &ViewedScene, pieces: &[Piece], apart_by_kind: bool) -> Draft {
         frame.right * image.x + frame.upward * image.y + frame.forward * (image.depth - distance)
     };
     for_each_trail(&links, |trail| {
-        draft.points.push(at(trail[0]));
-        draft.points.extend(trail.iter().map(|&end| at(end ^ 1)));
-        draft.heads.push((kind(trail[0] / 2), draft.points.len() as u32));
+        lines.points.push(at(trail[0]));
+        lines.points.extend(trail.iter().map(|&end| at(end ^ 1)));
+        lines.heads.push((kind(trail[0] / 2), lines.points.len() as u32));
     });
-    draft
+    lines
 }
