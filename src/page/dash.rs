@@ -288,7 +288,8 @@ mod tests {
         let n_gaps = (whole / 3.0).round();
         assert_eq!(all.len() as f64, n_gaps + 1.0);
         assert!((length(&all) - whole * 2.0 / 3.0).abs() < 1e-9);
-        let each: Vec<f64> = all[1..all.len() - 1].iter().map(|d| length(std::slice::from_ref(d))).collect();
+        let each: Vec<f64> =
+            all[1..all.len() - 1].iter().map(|d| length(std::slice::from_ref(d))).collect();
         assert!(each.iter().all(|d| (d - whole / n_gaps * 2.0 / 3.0).abs() < 1e-9), "{each:?}");
     }
 

@@ -332,9 +332,20 @@ fn a_dropped_model_is_shown_and_a_broken_one_is_not() {
 #[test]
 fn curved_and_hatched_drawings_are_saved_as_their_commands_draw_them() {
     let folder = tempfile::tempdir().unwrap();
-    let models = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/models");
-    fs::copy(models.join("benchy_wheel.stl"), folder.path().join("wheel.stl")).unwrap();
-    let viewer = Viewer::start_in(folder, &["wheel.stl"]);
+    // A cylinder of twelve sides.
+    let mut cylinder = String::new();
+    for k in 0..12 {
+        let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 12.0).sin_cos();
+        cylinder += &format!("v {cos} {sin} 0\nv {cos} {sin} 2\n");
+    }
+    for k in 0..12 {
+        let (a, b) = (2 * k + 1, 2 * ((k + 1) % 12) + 1);
+        cylinder += &format!("f {a} {b} {} {}\n", b + 1, a + 1);
+    }
+    let top: Vec<String> = (0..12).map(|k| (2 * k + 2).to_string()).collect();
+    cylinder += &format!("f {}\n", top.join(" "));
+    fs::write(folder.path().join("round.obj"), cylinder).unwrap();
+    let viewer = Viewer::start_in(folder, &["round.obj"]);
     for options in
         [json!({ "smooth": "40" }), json!({ "hatch": "straight" }), json!({ "hatch": true })]
     {
