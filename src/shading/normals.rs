@@ -13,7 +13,7 @@ const MOST_COMPARED: usize = 256;
 /// For each corner of each triangle the mean normal, by area, of the triangles at that vertex that meet
 /// it at `angle_deg` or less: of length one, or zero where there is none.
 ///
-/// At vertices with more than [`MOST_COMPARED`] triangles it is the mean of all. O(triangles), in
+/// At vertices with more than 256 triangles it is the mean of all of them. O(triangles), in
 /// parallel.
 pub fn smooth_normals(scene: &Scene, angle_deg: f64) -> Vec<[DVec3; 3]> {
     let triangles = scene.triangles();
