@@ -126,7 +126,7 @@ fn a_stroke_that_comes_back_on_itself_is_drawn_once() {
     assert!((20.0..20.8).contains(&once), "{once}");
     // A tight wave is no overlap: it goes on.
     let wave: Vec<DVec2> =
-        (0..100).map(|k| dvec2(f64::from(k) * 0.1, f64::from(k % 2) * 0.01)).collect();
+        (0..100).map(|k| dvec2(f64::from(k) * 0.1, f64::from(k % 2) * 0.004)).collect();
     let whole: f64 = wave.windows(2).map(|p| p[0].distance(p[1])).sum();
     assert!((ink(&of_wires(&[&wave], plain())) - whole).abs() < 1e-9);
 }
@@ -148,6 +148,20 @@ fn visible_lines_cover_hidden_ones_and_hidden_ones_cover_each_other_once() {
     };
     assert!((of(false) - 120.0).abs() < 1e-9, "{}", of(false));
     assert!((of(true) - 60.0).abs() < 1e-9, "{}", of(true));
+}
+
+#[test]
+fn a_visible_line_stays_whole_beside_a_longer_hidden_one() {
+    let plate = |low: f64, high: f64, z: f64| {
+        [(low, low), (high, low), (high, high), (low, high)].map(|(x, y)| dvec3(x, y, z))
+    };
+    let (top, small, below) =
+        (plate(0.0, 30.0, 3.0), plate(10.0, 15.0, 5.0), plate(10.05, 29.0, 1.0));
+    let options = DrawOptions { hidden: HiddenLines::Solid, ..plain() };
+    let strokes = drawn(&scene(&[], &[&top, &small, &below]), options).drawing;
+    let visible = strokes.iter().filter(|s| s.qi == 0).flat_map(|s| s.points.windows(2));
+    let visible: f64 = visible.map(|p| p[0].distance(p[1])).sum();
+    assert!((visible - 140.0).abs() < 1e-9, "{visible}");
 }
 
 /// The share of a drawing's ink that lies within 0.05 mm of other ink of the same direction, sampled, and
