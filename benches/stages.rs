@@ -16,7 +16,7 @@ use hiddenline::stages::classify::{LineSelection, ViewedScene};
 use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
 use hiddenline::stages::engines::image::raster::Corners;
 use hiddenline::stages::engines::image::{self, PixelMap, Raster};
-use hiddenline::stages::model::mesh::Mesh;
+use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::model::topology::Topology;
 use hiddenline::stages::page::{Page, PageOptions, PlotOptions};
@@ -70,7 +70,7 @@ fn outlines() -> LineSelection {
 }
 
 fn settings() -> VisibilityOptions {
-    VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: true }
+    VisibilityOptions { find_doubled: true, ..VisibilityOptions::EXACT }
 }
 
 fn chaining() -> ChainOptions {
@@ -116,6 +116,39 @@ fn d_visibility_of_outlines(bencher: Bencher, n: u32) {
 fn e_visibility_of_all_edges(bencher: Bencher, n: u32) {
     let scene = Scene::new(read(&bumpy_sphere(n)));
     let view = view(&scene, LineSelection::all_edges());
+    bencher.bench_local(|| solve(black_box(&view), LineEngine::default(), &settings()));
+}
+
+/// Sheets of 40 × 40 squares, one behind the other, of which only the first shows.
+fn sheets(n: u32) -> Scene {
+    const SIDE: u32 = 40;
+    let mut soup = PolygonSoup::default();
+    for sheet in 0..n {
+        let first = soup.positions.len() as u32;
+        let at = |i: u32, j: u32| first + i * (SIDE + 1) + j;
+        for i in 0..=SIDE {
+            for j in 0..=SIDE {
+                let [x, z] = [i, j].map(|k| 2.0 * f64::from(k) / f64::from(SIDE) - 1.0);
+                soup.positions.push(dvec3(x, 0.01 * f64::from(sheet), z));
+            }
+        }
+        for i in 0..SIDE {
+            for j in 0..SIDE {
+                soup.push_face(&[at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                soup.push_face(&[at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+    }
+    Scene::new(Mesh::new(soup).expect("finite points").0)
+}
+
+#[divan::bench(args = [10, 100])]
+fn e_visibility_of_sheets(bencher: Bencher, n: u32) {
+    let scene = sheets(n);
+    let camera =
+        Camera::new(dvec3(0.0, -5.0, 0.0), DVec3::ZERO, DVec3::Z, Projection::Orthographic)
+            .expect("a camera");
+    let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
     bencher.bench_local(|| solve(black_box(&view), LineEngine::default(), &settings()));
 }
 

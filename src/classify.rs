@@ -20,7 +20,7 @@
 //! When both uses run the same way, the faces are wound inconsistently; the second face is then
 //! flipped for the comparison, so kinds do not depend on the winding.
 
-use crate::camera::{Camera, ImagePoint};
+use crate::camera::{Camera, ImageError, ImagePoint};
 use crate::model::creases::CreaseAngle;
 use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
@@ -204,6 +204,7 @@ pub struct ViewedScene<'a> {
     triangle_turns: Vec<Sign>,
     /// Empty when every face is a triangle, since the turns then say it all.
     facings: Vec<Sign>,
+    uneven: Option<Vec<u32>>,
     drawn: Vec<SelectedLine>,
     /// The lines in `drawn` that are drawn only where they are outline.
     only_outline: Vec<u32>,
@@ -278,8 +279,10 @@ impl<'a> ViewedScene<'a> {
         // With the rest of what is rounded they are as good as images of vertices.
         let constructed = constructed.par_iter();
         images.par_extend(constructed.map(|p| image(p.rounded() - eye + p.rest())));
-        let triangle_turns =
-            scene.triangles().par_iter().map(|&[p, q, r]| sight.turn(p, q, r)).collect();
+        let near_plane_cuts = (0..positions.len() as u32)
+            .into_par_iter()
+            .any(|vertex| sight.near_distance(vertex).1 != Sign::Positive);
+        let triangle_turns = turns(scene, &sight, &images[..positions.len()], near_plane_cuts);
         let n_faces = scene.mesh().n_faces() as u32;
         let facings = if scene.triangles().len() == n_faces as usize {
             Vec::new()
@@ -287,9 +290,7 @@ impl<'a> ViewedScene<'a> {
             let facing = |face| sight.facing(scene.mesh().face(face));
             (0..n_faces).into_par_iter().map(facing).collect()
         };
-        let near_plane_cuts = (0..positions.len() as u32)
-            .into_par_iter()
-            .any(|vertex| sight.near_distance(vertex).1 != Sign::Positive);
+        let uneven = facings.is_empty().then(|| uneven_edges(scene, &triangle_turns));
         let mut view = Self {
             scene,
             camera: *camera,
@@ -297,6 +298,7 @@ impl<'a> ViewedScene<'a> {
             image: images,
             triangle_turns,
             facings,
+            uneven,
             drawn: Vec::new(),
             only_outline: Vec::new(),
             near_plane_cuts,
@@ -383,6 +385,11 @@ impl<'a> ViewedScene<'a> {
         &self.image
     }
 
+    /// How far the images may be from the truth.
+    pub fn image_error(&self) -> ImageError {
+        ImageError::new(self.sight.has_near_plane(), self.sight.size())
+    }
+
     /// The turn of every triangle's image, positive when counter-clockwise.
     pub fn triangle_turns(&self) -> &[Sign] {
         &self.triangle_turns
@@ -392,6 +399,12 @@ impl<'a> ViewedScene<'a> {
     pub fn facing(&self, face: u32) -> Sign {
         let facings = if self.facings.is_empty() { &self.triangle_turns } else { &self.facings };
         facings[face as usize]
+    }
+
+    /// The edges that are not surely *even*, with one triangle on each side of their image, in order;
+    /// `None` when there are faces of more than three corners. Silhouettes are among them.
+    pub fn uneven_edges(&self) -> Option<&[u32]> {
+        self.uneven.as_deref()
     }
 
     /// What to draw, by number: edges in the order of the topology, then the other lines of the scene,
@@ -423,20 +436,24 @@ impl<'a> ViewedScene<'a> {
             .with(StrokeKind::Silhouette)
             .with(StrokeKind::Boundary)
             .with(StrokeKind::Nonmanifold);
-        let mut drawn: Vec<(SelectedLine, bool)> = (0..n_edges)
-            .into_par_iter()
-            .with_min_len(4096)
-            .filter_map(|edge| {
-                let whole = self.kind(edge, lines, &creases);
-                let kind = whole.or_else(|| {
-                    let outlined = lines.has_outline();
-                    outlined.then(|| self.kind(edge, of_outline, &creases))?
-                })?;
-                let [a, b] = self.scene.topology().edge(edge);
-                let drawn = (SelectedLine { edge, kind }, whole.is_some());
-                (!self.sight.same_image(a, b)).then_some(drawn)
-            })
-            .collect();
+        let selected = |edge: u32| {
+            let whole = self.kind(edge, lines, &creases);
+            let kind = whole.or_else(|| {
+                let outlined = lines.has_outline();
+                outlined.then(|| self.kind(edge, of_outline, &creases))?
+            })?;
+            let [a, b] = self.scene.topology().edge(edge);
+            let drawn = (SelectedLine { edge, kind }, whole.is_some());
+            (!self.sight.same_image(a, b)).then_some(drawn)
+        };
+        let even_kinds = [StrokeKind::Crease, StrokeKind::Material, StrokeKind::Mesh];
+        let takes_even = even_kinds.into_iter().any(|kind| lines.contains(kind));
+        let mut drawn: Vec<(SelectedLine, bool)> = match &self.uneven {
+            Some(uneven) if !takes_even => {
+                uneven.par_iter().with_min_len(4096).filter_map(|&edge| selected(edge)).collect()
+            }
+            _ => (0..n_edges).into_par_iter().with_min_len(4096).filter_map(selected).collect(),
+        };
         let others = self.other_lines(lines, &drawn);
         drawn.extend(others);
         if let Some(own) = self.own {
@@ -564,6 +581,52 @@ impl<'a> ViewedScene<'a> {
             (false, false) => chosen(StrokeKind::Mesh),
         }
     }
+}
+
+/// The turn of the image of every triangle.
+///
+/// Exact. Images in single precision decide nearly all of them, and are quickly read.
+fn turns(scene: &Scene, sight: &Sight, images: &[ImagePoint], near_plane_cuts: bool) -> Vec<Sign> {
+    let exact = |&[p, q, r]: &[u32; 3]| sight.turn(p, q, r);
+    let triangles = scene.triangles().par_iter();
+    if near_plane_cuts || !sight.has_filters() {
+        return triangles.map(exact).collect();
+    }
+    let single = |point: &ImagePoint| point.image().to_array().map(|x| x as f32);
+    let images: Vec<[f32; 2]> = images.par_iter().map(single).collect();
+    let sizes = images.par_iter().map(|[x, y]| x.abs() + y.abs());
+    let size = f64::from(sizes.reduce(|| 0.0, f32::max));
+    let error = ImageError::new(sight.has_near_plane(), sight.size());
+    // Rounding to single precision adds half of its epsilon.
+    let error = error.of_coordinate(size) + size * f64::from(f32::EPSILON);
+    triangles
+        .map(|corners| {
+            let [a, b, c] = corners.map(|corner| images[corner as usize].map(f64::from));
+            let (along, to) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+            let area = along[0] * to[1] - along[1] * to[0];
+            let reach = along[0].abs() + along[1].abs() + to[0].abs() + to[1].abs();
+            // Each factor is off by two errors; products round by far less than the rest.
+            let slack = 4.0 * error * (reach + 4.0 * error);
+            if area.abs() > slack { Sign::of(area) } else { exact(corners) }
+        })
+        .collect()
+}
+
+/// The edges that are not surely even: those without exactly two triangles, wound alike, that both face
+/// the eye or both face away from it. The triangles must be the faces.
+fn uneven_edges(scene: &Scene, turns: &[Sign]) -> Vec<u32> {
+    let topology = scene.topology();
+    let is_even = |edge: u32| match *topology.uses(edge) {
+        [a, b] => {
+            let turn = turns[a.face() as usize];
+            turn != Sign::Zero
+                && turn == turns[b.face() as usize]
+                && a.runs_upwards() != b.runs_upwards()
+        }
+        _ => false,
+    };
+    let edges = (0..topology.edges().len() as u32).into_par_iter().with_min_len(4096);
+    edges.filter(|&edge| !is_even(edge)).collect()
 }
 
 /// What is needed to find creases and borders of materials, if they are drawn.

@@ -175,6 +175,7 @@ impl DrawOptions {
             contact_tolerance: self.contact_tolerance_in(scene),
             count_layers: self.hidden != HiddenLines::None,
             find_doubled: !self.exact,
+            ..VisibilityOptions::default()
         }
     }
 }

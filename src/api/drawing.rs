@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::{Error, Sheet};
 use crate::camera::Camera;
-use crate::camera::framing::View;
+use crate::camera::framing::{View, ViewError};
 use crate::draw::{DrawOptions, draw};
+use crate::extent::Extent;
 use crate::hatch::{HatchOptions, HatchPage, hatch, shadow_outlines};
 use crate::model::scene::Scene;
 use crate::page::{Dash, Page, PageOptions, PenRole, PenRule, PlotOptions, with_hatch_pen};
@@ -26,6 +27,8 @@ pub struct Drawing<'a> {
     plot: PlotOptions,
     fill: Option<FillOptions>,
     hatch: Option<HatchOptions>,
+    /// What is placed on the page; by default what the view shows.
+    frame: Option<Extent>,
 }
 
 impl Scene {
@@ -50,6 +53,7 @@ impl Scene {
             plot: PlotOptions::default(),
             fill: None,
             hatch: None,
+            frame: None,
         }
     }
 
@@ -66,6 +70,47 @@ impl Scene {
     ) -> Result<Vec<Sheet>, Error> {
         let page = page.into();
         views.par_iter().map(|view| self.draw(view, lines).on(page)).collect()
+    }
+
+    /// Draws the scene as each of `views` shows it, all at one scale and place on the page, so that they
+    /// can be laid over each other or shown as a film. In parallel; the sheets come in the order of the
+    /// views.
+    ///
+    /// # Errors
+    /// As for [`draw_views`](Self::draw_views).
+    ///
+    /// ```
+    /// use hiddenline::{DrawOptions, Paper, Scene, View};
+    ///
+    /// let scene = Scene::open("examples/models/benchy_wheel.stl")?;
+    /// let views = scene.turntable(&View::from_angles(0.0, 20.0), 4)?;
+    /// let sheets = scene.draw_frames(&views, &DrawOptions::default(), Paper::A5)?;
+    /// assert_eq!(sheets.len(), 4);
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn draw_frames(
+        &self,
+        views: &[View],
+        lines: &DrawOptions,
+        page: impl Into<PageOptions>,
+    ) -> Result<Vec<Sheet>, Error> {
+        let (page, bounds) = (page.into(), self.mesh().bounds().unwrap_or_default());
+        let cameras: Result<Vec<Camera>, _> =
+            views.iter().map(|view| view.camera(bounds)).collect();
+        let frame = Some(self.extent_of_views(&cameras?));
+        let drawing = |view| Drawing { frame, ..self.draw(view, lines) };
+        views.par_iter().map(|view| drawing(view).on(page)).collect()
+    }
+
+    /// The views on the way once around the vertical through what `view` looks at, at `n` equal angles,
+    /// `view` itself first.
+    ///
+    /// # Errors
+    /// A view makes no camera.
+    pub fn turntable(&self, view: &View, n: u32) -> Result<Vec<View>, Error> {
+        let camera = view.camera(self.mesh().bounds().unwrap_or_default())?;
+        let cameras = camera.turntable(n).map_err(ViewError::from)?;
+        Ok(cameras.iter().map(View::from).collect())
     }
 }
 
@@ -189,7 +234,8 @@ impl Drawing<'_> {
 
     fn place(&self, options: PageOptions) -> Result<(Camera, Page), Error> {
         let camera = self.view.camera(self.scene.mesh().bounds().unwrap_or_default())?;
-        let page = Page::place(&self.scene.extent(&camera), &camera, &options)?;
+        let extent = self.frame.unwrap_or_else(|| self.scene.extent(&camera));
+        let page = Page::place(&extent, &camera, &options)?;
         Ok((camera, page))
     }
 }

@@ -15,12 +15,14 @@
 
 pub mod framing;
 
+mod image_error;
 mod image_point;
 mod turntable;
 
 use glam::{DVec2, DVec3};
 use thiserror::Error;
 
+pub use self::image_error::ImageError;
 pub use self::image_point::ImagePoint;
 
 /// The projection: perspective or parallel.

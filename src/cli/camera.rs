@@ -17,7 +17,7 @@ use super::choice::one_of;
 use super::paths::is_dash;
 use super::values;
 
-#[derive(Args)]
+#[derive(Args, Clone)]
 #[command(next_help_heading = "Camera")]
 pub(super) struct CameraArgs {
     /// Position of the eye
@@ -46,16 +46,15 @@ pub(super) struct CameraArgs {
     /// Projection [default: perspective, but orthographic with --view]
     #[arg(long, value_parser = one_of::<ProjectionKind>())]
     projection: Option<ProjectionKind>,
-    /// Vertical field of view in degrees
+    /// Vertical field of view in degrees [default: 30]
     ///
     /// It affects only the distance of an automatic camera, and what --fit-fov shows.
     #[arg(long, value_name = "DEG", value_parser = values::field_of_view)]
-    #[arg(default_value_t = DEFAULT_FOV_DEG)]
-    fov: f64,
-    /// Distance of the near plane from the eye, as a fraction of the distance to the target
+    fov: Option<f64>,
+    /// Distance of the near plane from the eye, as a fraction of the distance to the target [default:
+    /// 0.000001]
     #[arg(long, value_name = "PART", value_parser = values::positive)]
-    #[arg(default_value_t = DEFAULT_NEAR)]
-    near: f64,
+    near: Option<f64>,
     /// Use the camera of a file written by --format json
     #[arg(long, value_name = "FILE")]
     #[arg(conflicts_with_all = ["eye", "target", "up", "azimuth", "elevation", "distance", "view",
@@ -72,6 +71,30 @@ pub(super) enum ViewSource {
 }
 
 impl CameraArgs {
+    /// The same with options that are not given taken from `base`, unless what is given rules them out.
+    pub(super) fn or(self, base: &Self) -> Self {
+        let has_angles = self.azimuth.is_some() || self.elevation.is_some();
+        let (has_eye, has_view) = (self.eye.is_some(), self.view.is_some());
+        Self {
+            eye: self.eye.or(base.eye.filter(|_| !has_angles && !has_view)),
+            target: self.target.or(base.target),
+            up: self.up.or(base.up),
+            azimuth: self.azimuth.or(base.azimuth),
+            elevation: self.elevation.or(base.elevation),
+            distance: self.distance.or(base.distance),
+            view: self.view.or(base.view.filter(|_| !has_angles && !has_eye)),
+            projection: self.projection.or(base.projection),
+            fov: self.fov.or(base.fov),
+            near: self.near.or(base.near),
+            camera: None,
+        }
+    }
+
+    /// The file that the camera is read from.
+    pub(super) fn input(&self) -> Option<PathBuf> {
+        self.camera.clone()
+    }
+
     pub(super) fn view_source(self) -> ViewSource {
         if let Some(path) = self.camera {
             return ViewSource::File(path);
@@ -90,8 +113,8 @@ impl CameraArgs {
             target: self.target,
             up: self.up,
             projection: self.projection,
-            fov_deg: self.fov,
-            near: self.near,
+            fov_deg: self.fov.unwrap_or(DEFAULT_FOV_DEG),
+            near: self.near.unwrap_or(DEFAULT_NEAR),
         })
     }
 }

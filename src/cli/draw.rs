@@ -3,14 +3,17 @@
 mod lines;
 #[cfg(feature = "view")]
 mod live;
+mod many;
 
 use std::error::Error;
+use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec2;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::drafting::Drafted;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
+use hiddenline::stages::extent::Extent;
 use hiddenline::stages::hatch::{Ground, HatchOptions, HatchPage, hatch, shadow_outlines};
 use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::optimize::OptimizeOptions;
@@ -26,6 +29,7 @@ use hiddenline::stages::write::dxf::DxfScale;
 use self::lines::LineArgs;
 #[cfg(feature = "view")]
 pub(super) use self::live::{Live, Turned};
+use self::many::{Many, ManyArgs};
 use super::camera::{CameraArgs, ViewSource};
 use super::hatch::{HatchArgs, LightArgs, with_remedy};
 use super::messages::counted;
@@ -52,7 +56,11 @@ Examples:
   hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
       Two models, the second one lifted.
   cat part.stl | hiddenline draw - --input-format stl > part.svg
-      From standard input to standard output.";
+      From standard input to standard output.
+  hiddenline draw cow.obj --turntable 36 -o 'frames/{stem}-{index:03}.svg'
+      Frames of a film, all at one scale.
+  hiddenline draw --each parts/*.stl -o 'out/{stem}.svg'
+      A drawing of each model.";
 
 /// Draw models as lines, the hidden ones removed
 ///
@@ -77,6 +85,8 @@ pub(super) struct DrawArgs {
     #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
+    many: ManyArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -85,6 +95,8 @@ pub(super) struct Job {
     files: ModelFiles,
     smoothing: Option<Smoothing>,
     view: ViewSource,
+    /// Many drawings in place of one.
+    many: Option<Many>,
     draw: DrawOptions,
     hatch: Option<HatchOptions>,
     light: LightSource,
@@ -102,8 +114,8 @@ impl DrawArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { model, smooth, camera, lines, hatch, light, page, output } = self;
-        let files = model.files()?;
+        let Self { model, smooth, camera, lines, hatch, light, page, many, output } = self;
+        let files = model.with(many.listed_models()?).files()?;
         let files = if lines.exact { files.with_equal_faces() } else { files };
         let files = files.in_unit(page.given_unit_mm());
         let mut output = output.options(lines.exact)?;
@@ -111,9 +123,16 @@ impl DrawArgs {
         output.warnings.extend(lines.without_effect(&output.plotting));
         let has_outlines = lines.lines.contains(StrokeKind::Shadow);
         output.warnings.extend(hatch.without_effect(has_outlines, &["--light", "--light-at"]));
+        let inputs = files.inputs().chain(camera.input()).chain(many.inputs());
+        let inputs: Vec<PathBuf> = inputs.chain(output.inputs.clone()).collect();
+        let many = if many.are_used(output.path.as_deref()) {
+            let path = output.path.as_deref();
+            Some(many.drawings(files.clone(), camera.clone(), path, &inputs)?)
+        } else {
+            check_place(output.path.as_deref(), &inputs)?;
+            None
+        };
         let view = camera.view_source();
-        let inputs = files.inputs().chain(view.input()).chain(output.inputs.clone());
-        check_place(output.path.as_deref(), inputs)?;
         let weights = lines.style.weights();
         let apart_by_kind = output.format == Format::Json
             || output.plotting.has_pens_by_kind()
@@ -124,6 +143,7 @@ impl DrawArgs {
         Ok(Job {
             files,
             view,
+            many,
             smoothing,
             page: page_options,
             unit_mm: page.unit_mm(),
@@ -142,6 +162,9 @@ impl DrawArgs {
 
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
+    if let Some(many) = &job.many {
+        return many::run(job, many);
+    }
     let mut run = Run::start(&job.output)?;
     let read = || job.files.read();
     let lines = Some(job.draw.lines);
@@ -154,16 +177,18 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         &run.progress,
         &mut run.stats,
     )?;
-    let (drawing, sheet) = strokes(job, &scene, camera, notes, &mut run)?;
+    let extent = scene.extent(&camera);
+    let (drawing, sheet) = strokes(job, &scene, camera, extent, notes, &mut run)?;
     drop(scene);
     run.draw(&drawing, &sheet, plot_options(job), &OptimizeOptions::for_drawings())
 }
 
-/// Draws the scene for its page.
+/// Draws the scene for a page that shows `extent`.
 fn strokes(
     job: &Job,
     scene: &Scene,
     camera: Camera,
+    extent: Extent,
     notes: Notes,
     run: &mut Run,
 ) -> Result<(Strokes, PlacedPage), Box<dyn Error>> {
@@ -174,7 +199,7 @@ fn strokes(
     run.unit_mm = job.unit_mm * unit_mm;
     run.dxf_scale = page::dxf_in_unit(job.dxf_scale, &page, unit_mm);
     run.progress.stage("drawing");
-    let sheet = PlacedPage::new(scene.extent(&camera), camera, &page)?;
+    let sheet = PlacedPage::new(extent, camera, &page)?;
     let mut drawn = draw(scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
     if job.draw.lines.contains(StrokeKind::Shadow) {
         run.progress.stage("finding shadows");

@@ -14,6 +14,7 @@ mod input;
 mod machine;
 mod messages;
 mod models;
+mod naming;
 mod optimize;
 mod output;
 mod page;

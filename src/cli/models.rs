@@ -50,6 +50,7 @@ pub(super) struct ModelArgs {
 }
 
 /// The models, and how they become one scene.
+#[derive(Clone)]
 pub(super) struct ModelFiles {
     pub(super) models: Vec<PathBuf>,
     /// One for each model.
@@ -67,6 +68,13 @@ pub(super) struct ModelFiles {
 pub(super) type HeldFiles = Arc<HashMap<PathBuf, Vec<u8>>>;
 
 impl ModelArgs {
+    /// Adds models to those that were typed.
+    #[must_use]
+    pub(super) fn with(mut self, models: Vec<PathBuf>) -> Self {
+        self.models.extend(models);
+        self
+    }
+
     /// Checks what clap cannot; the error is a message about usage.
     pub(super) fn files(self) -> Result<ModelFiles, String> {
         if self.models.iter().filter(|path| is_dash(path)).count() > 1 {
@@ -122,6 +130,16 @@ impl ModelFiles {
     pub(super) fn holding(mut self, held: HeldFiles) -> Self {
         self.held = held;
         self
+    }
+
+    /// Each model by itself.
+    pub(super) fn each(self) -> Vec<Self> {
+        let one = |(model, pose): (&PathBuf, &Pose)| Self {
+            models: vec![model.clone()],
+            poses: vec![*pose],
+            ..self.clone()
+        };
+        self.models.iter().zip(&self.poses).map(one).collect()
     }
 
     fn read_one(&self, path: &Path) -> Result<Model, ReadError> {

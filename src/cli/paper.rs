@@ -139,7 +139,7 @@ pub(super) fn page_error(error: &PageError) -> String {
 }
 
 /// Refuses to send a picture to a terminal.
-fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
+pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
     if output.path.is_none() && output.format.is_binary() && io::stdout().is_terminal() {
         return Err("this format is not for the terminal; give -o FILE".into());
     }
@@ -147,7 +147,7 @@ fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
 }
 
 /// Sets how many threads work; `None` is one for each core.
-fn start_threads(threads: Option<usize>) -> Result<Stats, Box<dyn Error>> {
+pub(super) fn start_threads(threads: Option<usize>) -> Result<Stats, Box<dyn Error>> {
     if let Some(threads) = threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
@@ -158,22 +158,24 @@ impl<'a> Run<'a> {
     /// A run with nothing done yet.
     pub(super) fn start(output: &'a OutputOptions) -> Result<Self, Box<dyn Error>> {
         check_terminal(output)?;
-        let start = Instant::now();
         let stats = start_threads(output.threads)?;
-        let progress = Progress::new(output.quiet);
         let notes = Notes { warnings: output.warnings.clone(), ..Notes::default() };
-        let empty_because = "nothing is in view".to_owned();
-        Ok(Self {
+        Ok(Self { progress: Progress::new(output.quiet), notes, ..Self::silent(output, stats) })
+    }
+
+    /// One of many runs at once, which does not show its progress.
+    pub(super) fn silent(output: &'a OutputOptions, stats: Stats) -> Self {
+        Self {
             output,
-            start,
-            progress,
+            start: Instant::now(),
+            progress: Progress::new(true),
             stats,
-            notes,
+            notes: Notes::default(),
             unit_mm: 1.0,
-            empty_because,
+            empty_because: "nothing is in view".to_owned(),
             dxf_scale: DxfScale::default(),
             kept: None,
-        })
+        }
     }
 
     /// A run that writes no file, prints nothing, and leaves its result in `kept`.
@@ -198,21 +200,33 @@ impl<'a> Run<'a> {
 
     /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
     pub(super) fn draw(
-        mut self,
+        self,
         drawing: &Strokes,
         sheet: &PlacedPage,
         plot: PlotOptions,
         usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
+        let path = self.output.path.as_deref();
+        self.draw_to(path, drawing, sheet, plot, usual).map(Report::tell)
+    }
+
+    /// The same to another file than the output's; what there is to report is returned.
+    pub(super) fn draw_to(
+        mut self,
+        path: Option<&Path>,
+        drawing: &Strokes,
+        sheet: &PlacedPage,
+        plot: PlotOptions,
+        usual: &OptimizeOptions,
+    ) -> Result<Report, Box<dyn Error>> {
         if let Some(kept) = &mut self.kept {
             kept.sheet = Some(sheet.clone());
         }
         let PlacedPage { camera, page, .. } = sheet;
         let paper = page.paper.description();
         if self.output.format == Format::Json {
-            let path = self.output.path.as_deref();
             let what = Written { paper: &paper, contents: drawing_described(drawing) };
-            return self.write(path, what, drawing.is_empty(), None, |out| {
+            return self.report(path, what, drawing.is_empty(), None, |out| {
                 json::write(drawing, camera, page.page_from_image, out).map(|()| Seconds::default())
             });
         }
@@ -233,7 +247,7 @@ impl<'a> Run<'a> {
         if placed.cropped {
             self.empty_because = "all of it lies beyond the margins".to_owned();
         }
-        self.plot(&paper, placed.plot, usual)
+        self.report_plot(path, &paper, placed.plot, usual)
     }
 
     /// Joins, orders and writes a page, and ends the run.
@@ -249,12 +263,22 @@ impl<'a> Run<'a> {
 
     /// The same to another file than the output's.
     pub(super) fn plot_to(
-        mut self,
+        self,
         path: Option<&Path>,
         paper: &str,
         plot: Plot,
         usual: &OptimizeOptions,
     ) -> Result<(), Box<dyn Error>> {
+        self.report_plot(path, paper, plot, usual).map(Report::tell)
+    }
+
+    fn report_plot(
+        mut self,
+        path: Option<&Path>,
+        paper: &str,
+        plot: Plot,
+        usual: &OptimizeOptions,
+    ) -> Result<Report, Box<dyn Error>> {
         let output = self.output;
         let plot = match output.plotter() {
             Some(plotter) => {
@@ -297,7 +321,7 @@ impl<'a> Run<'a> {
             self.stats.seconds.total = self.start.elapsed().as_secs_f64();
             kept.plot = Some(plot);
             (kept.notes, kept.stats) = (self.notes, self.stats);
-            return Ok(());
+            return Ok(Report::default());
         }
         let target = match &output.target {
             Some(Target::Dxf(_)) => Target::Dxf(self.dxf_scale),
@@ -305,7 +329,7 @@ impl<'a> Run<'a> {
             None => return Err(WriteError::OnlyStrokes.into()),
         };
         let written = &plot;
-        self.write(path, what, is_empty, Some(done), |out| -> Result<Seconds, OutputError> {
+        self.report(path, what, is_empty, Some(done), |out| -> Result<Seconds, OutputError> {
             write(written, &target, out)?;
             Ok(Seconds::default())
         })
@@ -313,13 +337,24 @@ impl<'a> Run<'a> {
 
     /// Writes a file and ends the run. What `write` spent on other stages than writing it returns.
     pub(super) fn write<E: From<io::Error> + Error + 'static>(
-        mut self,
+        self,
         path: Option<&Path>,
         what: Written,
         is_empty: bool,
         done: Option<Done>,
         write: impl FnOnce(&mut dyn Write) -> Result<Seconds, E>,
     ) -> Result<(), Box<dyn Error>> {
+        self.report(path, what, is_empty, done, write).map(Report::tell)
+    }
+
+    fn report<E: From<io::Error> + Error + 'static>(
+        mut self,
+        path: Option<&Path>,
+        what: Written,
+        is_empty: bool,
+        done: Option<Done>,
+        write: impl FnOnce(&mut dyn Write) -> Result<Seconds, E>,
+    ) -> Result<Report, Box<dyn Error>> {
         if is_empty {
             self.notes.warnings.push(format!("the drawing is empty: {}", self.empty_because));
         }
@@ -353,25 +388,41 @@ impl<'a> Run<'a> {
         stats.seconds.total = self.start.elapsed().as_secs_f64();
         if let Some(kept) = self.kept {
             (kept.notes, kept.stats) = (self.notes, self.stats);
-            return Ok(());
+            return Ok(Report::default());
         }
         stats.peak_bytes = peak_bytes();
+        let mut report = Report::default();
         if !output.quiet {
-            self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
-            self.notes.hints.iter().for_each(|hint| messages::hint(hint));
-            if !self.notes.summary.is_empty() {
-                messages::plain(&self.notes.summary);
-            }
+            report.warnings = self.notes.warnings;
+            report.hints = self.notes.hints;
+            report.lines.extend(Some(self.notes.summary).filter(|summary| !summary.is_empty()));
             let name = path.map_or("<stdout>".into(), Path::to_string_lossy);
-            messages::plain(format_args!("{name}  {}{}", what.paper, what.contents));
+            report.lines.push(format!("{name}  {}{}", what.paper, what.contents));
             if output.verbose {
-                tell_more(output, stats, done.as_ref());
+                tell_more(output, stats, done.as_ref(), &mut report.lines);
             }
         }
         if output.stats {
-            messages::plain(serde_json::to_string(stats)?);
+            report.lines.push(serde_json::to_string(stats)?);
         }
-        Ok(())
+        Ok(report)
+    }
+}
+
+/// What a run has to tell when all went well.
+#[derive(Default)]
+pub(super) struct Report {
+    warnings: Vec<String>,
+    hints: Vec<String>,
+    lines: Vec<String>,
+}
+
+impl Report {
+    /// Tells it.
+    pub(super) fn tell(self) {
+        self.warnings.iter().for_each(|warning| messages::warning(warning));
+        self.hints.iter().for_each(|hint| messages::hint(hint));
+        self.lines.iter().for_each(messages::plain);
     }
 }
 
@@ -473,11 +524,11 @@ fn duration(minutes: f64) -> String {
     }
 }
 
-/// Prints what `--verbose` adds.
-fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
+/// What `--verbose` adds.
+fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>, lines: &mut Vec<String>) {
     let seconds = &stats.seconds;
     if !stats.engine.is_empty() {
-        messages::plain(format_args!(
+        lines.push(format!(
             "engine {}, {}, {}, {} of {} edges drawn",
             stats.engine,
             counted(stats.threads, "thread", "threads"),
@@ -486,7 +537,7 @@ fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
             stats.edges
         ));
     }
-    messages::plain(format_args!(
+    lines.push(format!(
         "read {:.3} s, topology {:.3} s, classify {:.3} s, visibility {:.3} s, strokes {:.3} s, \
          order {:.3} s, write {:.3} s, total {:.3} s",
         seconds.read,
@@ -499,7 +550,7 @@ fn tell_more(output: &OutputOptions, stats: &Stats, done: Option<&Done>) {
         seconds.total
     ));
     if let (Some(done), Some(Effort::Within(limit))) = (done, output.plotting.effort()) {
-        messages::plain(format_args!(
+        lines.push(format!(
             "ordering tried {} changes in {:.1} of {:.1} s",
             done.n_changes,
             done.order_seconds,

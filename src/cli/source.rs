@@ -9,12 +9,13 @@ pub(super) fn source(arguments: impl Iterator<Item = OsString>) -> String {
     let mut arguments = arguments.map(|argument| argument.to_string_lossy().into_owned());
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
-            "-o" | "--output" | "--threads" | "--color" | "--preset" => {
+            "-o" | "--output" | "--threads" | "--color" | "--preset" | "--shard" => {
                 arguments.next();
             }
-            "-q" | "--quiet" | "-v" | "--verbose" | "--stats" | "--strict" => {}
+            "-q" | "--quiet" | "-v" | "--verbose" | "--stats" | "--strict" | "--skip-existing"
+            | "--keep-going" => {}
             other
-                if ["-o", "-q", "--output=", "--threads=", "--color=", "--preset="]
+                if ["-o", "-q", "--output=", "--threads=", "--color=", "--preset=", "--shard="]
                     .iter()
                     .any(|prefix| other.starts_with(prefix)) => {}
             other => {

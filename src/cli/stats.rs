@@ -70,6 +70,10 @@ pub(super) struct Counts {
     pub(super) back_faces: u64,
     /// Edges between two such triangles, hidden without a test.
     pub(super) back_edges: u64,
+    /// Triangles that were not tested, since they hide nothing visible.
+    pub(super) culled_triangles: u64,
+    /// Drawn edges that were not tested, since they certainly lie behind a surface.
+    pub(super) culled_edges: u64,
     /// Pairs of triangles whose boxes touch, tested for lines of intersection.
     pub(super) intersection_pairs: u64,
     /// Counts of the face engine, if areas are filled.
@@ -92,6 +96,8 @@ impl Stats {
         self.counts.sight_lines = drawn.counts.sight_lines;
         self.counts.back_faces = drawn.counts.back_faces;
         self.counts.back_edges = drawn.counts.back_edges;
+        self.counts.culled_triangles = drawn.counts.culled_triangles;
+        self.counts.culled_edges = drawn.counts.culled_edges;
         self.counts.exact_predicates = drawn.n_exact;
     }
 

@@ -14,7 +14,11 @@ pub(super) fn command() -> Command {
     #[cfg(feature = "view")]
     let program = super::view::with_options_of_drawings(program);
     program.mut_subcommands(|command| {
+        let takes_list = command.get_arguments().any(|arg| arg.get_id() == "list");
         command.mut_args(|arg| {
+            if takes_list && arg.get_id() == "models" {
+                return arg.required(false).required_unless_present("list");
+            }
             // So that the parser of the value says what it expects, not clap that -5 is not an option.
             let is_option = arg.get_long().is_some() && arg.get_action().takes_values();
             if is_option && !arg.is_allow_hyphen_values_set() {

@@ -50,11 +50,8 @@ pub fn draw(
 ) -> DrawOutput {
     let mut seconds = Seconds::default();
     let view = timed(&mut seconds.classify, || view(surface, camera, options));
-    let settings = VisibilityOptions {
-        contact_tolerance: 0.0,
-        count_layers: false,
-        find_doubled: !options.exact,
-    };
+    let settings =
+        VisibilityOptions { find_doubled: !options.exact, ..VisibilityOptions::default() };
     let mut n_exact = 0;
     let (visibility, counts, engine) = timed(&mut seconds.visibility, || {
         let by_horizons = if options.engine == LineEngine::Auto { tin::solve(&view) } else { None };

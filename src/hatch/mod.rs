@@ -100,6 +100,7 @@ pub fn hatch(
         contact_tolerance: lines.contact_tolerance_in(scene),
         count_layers: false,
         find_doubled: false,
+        ..VisibilityOptions::EXACT
     };
     let has_gaps = options.gap_mm > 0.0 && !lines.exact;
     let outlines = if has_gaps { outlines() } else { LineSelection::NONE };

@@ -73,6 +73,7 @@ pub fn shadow_outlines(
         contact_tolerance: lines.contact_tolerance_in(scene),
         count_layers: false,
         find_doubled: false,
+        ..VisibilityOptions::EXACT
     };
     let none = LineSelection::NONE;
     let view = ViewedScene::with_segments(scene, camera, none, 180.0, &segments);

@@ -16,8 +16,14 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Topology {
     edges: Vec<[u32; 2]>,
-    use_starts: Vec<u32>,
-    uses: Vec<EdgeUse>,
+    /// The uses of each edge, when there are one or two: the second is [`EdgeUse::NONE`] when there is
+    /// one. Otherwise [`EdgeUse::MANY`] stands second, after a number in `many_starts`.
+    pairs: Vec<[EdgeUse; 2]>,
+    /// Where the uses of each edge that has three or more begin in `many`, and where the last end.
+    many_starts: Vec<u32>,
+    many: Vec<EdgeUse>,
+    /// For each vertex the first edge of which it is the lower one; then the number of edges.
+    first_edges: Vec<u32>,
 }
 
 /// One time that a face's border runs along an edge.
@@ -28,6 +34,11 @@ pub struct EdgeUse {
 }
 
 impl EdgeUse {
+    /// No use. A mesh has fewer than 2³² / 3 faces, so no face has this number.
+    const NONE: Self = Self { packed: u32::MAX };
+    /// Three uses or more; no face has this number either.
+    const MANY: Self = Self { packed: u32::MAX - 1 };
+
     fn new(face: usize, upwards: bool) -> Self {
         Self { packed: (face as u32) << 1 | u32::from(upwards) }
     }
@@ -54,24 +65,20 @@ pub struct EdgeCounts {
     pub inconsistent: usize,
 }
 
-/// One use of an edge while the table is built, with the higher vertex.
-type Entry = (u32, EdgeUse);
-
 impl Topology {
     /// Finds the edges of `mesh`, ordered by their lower vertex, then their higher one.
     ///
     /// The uses of an edge are in the order of their faces. O(corners), in parallel.
     pub fn new(mesh: &Mesh) -> Self {
-        Self::of_faces(mesh.corners(), mesh.face_starts(), mesh.positions().len())
+        Self::of_faces(mesh.corners(), Faces::of(mesh), mesh.positions().len())
     }
 
     /// The same for bare triangles: their sides, each with the triangles along it as faces.
     pub fn of_triangles(triangles: &[[u32; 3]], n_vertices: usize) -> Self {
-        let starts: Vec<u32> = (0..=triangles.len() as u32).map(|t| 3 * t).collect();
-        Self::of_faces(triangles.as_flattened(), &starts, n_vertices)
+        Self::of_faces(triangles.as_flattened(), Faces::Triangles, n_vertices)
     }
 
-    fn of_faces(corners: &[u32], face_starts: &[u32], n_vertices: usize) -> Self {
+    fn of_faces(corners: &[u32], faces: Faces, n_vertices: usize) -> Self {
         let n_parts = rayon::current_num_threads().max(1);
         let vertices_per_part = n_vertices.div_ceil(n_parts).max(1);
 
@@ -82,23 +89,48 @@ impl Topology {
             .map(|part| {
                 let first = (part * vertices_per_part).min(n_vertices) as u32;
                 let last = ((part + 1) * vertices_per_part).min(n_vertices) as u32;
-                Part::collect(corners, face_starts, first..last)
+                Part::collect(corners, faces, first..last)
             })
             .collect();
 
         let n_edges = parts.iter().map(|part| part.edges.len()).sum();
         let mut topology = Self {
-            edges: Vec::with_capacity(n_edges),
-            use_starts: Vec::with_capacity(n_edges + 1),
-            uses: Vec::with_capacity(corners.len()),
+            edges: vec![[0; 2]; n_edges],
+            pairs: vec![[EdgeUse::default(); 2]; n_edges],
+            many_starts: vec![0],
+            many: Vec::new(),
+            first_edges: vec![0; n_vertices + 1],
         };
-        topology.use_starts.push(0);
+        let (mut edges, mut pairs) = (&mut topology.edges[..], &mut topology.pairs[..]);
+        let mut firsts = &mut topology.first_edges[..n_vertices];
+        let (mut runs, mut n_before) = (Vec::with_capacity(n_parts), 0);
         for part in &parts {
-            let before = topology.uses.len() as u32;
-            topology.edges.extend_from_slice(&part.edges);
-            topology.use_starts.extend(part.use_ends.iter().map(|end| before + end));
-            topology.uses.extend_from_slice(&part.uses);
+            let (edge_run, pair_run, first_run);
+            (edge_run, edges) = edges.split_at_mut(part.edges.len());
+            (pair_run, pairs) = pairs.split_at_mut(part.edges.len());
+            (first_run, firsts) = firsts.split_at_mut(part.first_edges.len());
+            let n_many = topology.many_starts.len() as u32 - 1;
+            runs.push((part, edge_run, pair_run, first_run, n_before, n_many));
+            n_before += part.edges.len() as u32;
+            let n_uses = topology.many.len() as u32;
+            topology.many_starts.extend(part.many_ends.iter().map(|end| n_uses + end));
+            topology.many.extend_from_slice(&part.many);
         }
+        runs.into_par_iter().for_each(|(part, edges, pairs, firsts, n_before, n_many)| {
+            edges.copy_from_slice(&part.edges);
+            for (pair, own) in pairs.iter_mut().zip(&part.pairs) {
+                *pair = match *own {
+                    [number, EdgeUse::MANY] => {
+                        [EdgeUse { packed: n_many + number.packed }, EdgeUse::MANY]
+                    }
+                    pair => pair,
+                };
+            }
+            for (first, own) in firsts.iter_mut().zip(&part.first_edges) {
+                *first = n_before + own;
+            }
+        });
+        topology.first_edges[n_vertices] = n_edges as u32;
         topology
     }
 
@@ -112,15 +144,26 @@ impl Topology {
         self.edges[edge as usize]
     }
 
-    /// The edge between two vertices, if there is one. O(log edges).
+    /// The edge between two vertices, if there is one. O(log edges at the lower one).
     pub fn find_edge(&self, a: u32, b: u32) -> Option<u32> {
-        self.edges.binary_search(&[a.min(b), a.max(b)]).ok().map(|edge| edge as u32)
+        let (low, high) = (a.min(b) as usize, a.max(b));
+        let &[first, last] = self.first_edges.get(low..low + 2)? else { return None };
+        let edges = &self.edges[first as usize..last as usize];
+        edges.binary_search_by_key(&high, |edge| edge[1]).ok().map(|i| first + i as u32)
     }
 
     /// The uses of one edge. Panics when there is no such edge.
+    #[inline]
     pub fn uses(&self, edge: u32) -> &[EdgeUse] {
-        let edge = edge as usize;
-        &self.uses[self.use_starts[edge] as usize..self.use_starts[edge + 1] as usize]
+        match &self.pairs[edge as usize] {
+            [number, EdgeUse::MANY] => {
+                let number = number.packed as usize;
+                let [start, end] = [self.many_starts[number], self.many_starts[number + 1]];
+                &self.many[start as usize..end as usize]
+            }
+            pair @ [_, EdgeUse::NONE] => &pair[..1],
+            pair => pair,
+        }
     }
 
     /// Counts what is not a closed, consistently wound surface.
@@ -140,18 +183,66 @@ impl Topology {
     }
 }
 
-/// The edges whose lower vertex lies in one range of vertices.
+/// How corners are divided into faces.
+#[derive(Clone, Copy)]
+enum Faces<'f> {
+    /// Three to each.
+    Triangles,
+    /// Where each begins, and where the last ends.
+    Starts(&'f [u32]),
+}
+
+impl<'f> Faces<'f> {
+    fn of(mesh: &'f Mesh) -> Self {
+        let are_triangles = mesh.corners().len() == 3 * mesh.n_faces()
+            && mesh.face_starts().par_iter().enumerate().all(|(i, &at)| at as usize == 3 * i);
+        if are_triangles { Self::Triangles } else { Self::Starts(mesh.face_starts()) }
+    }
+
+    /// Calls `f` with the lower vertex and the higher vertex of every use of an edge, and the use.
+    #[inline]
+    fn for_each_use(self, corners: &[u32], mut f: impl FnMut(u32, u32, EdgeUse)) {
+        let mut add = |face, from: u32, to: u32| {
+            f(from.min(to), from.max(to), EdgeUse::new(face, from < to));
+        };
+        match self {
+            Self::Triangles => {
+                let (triangles, _) = corners.as_chunks::<3>();
+                for (face, &[p, q, r]) in triangles.iter().enumerate() {
+                    add(face, r, p);
+                    add(face, p, q);
+                    add(face, q, r);
+                }
+            }
+            Self::Starts(starts) => {
+                for (face, range) in starts.windows(2).enumerate() {
+                    let border = &corners[range[0] as usize..range[1] as usize];
+                    let Some(&last) = border.last() else { continue };
+                    let mut from = last;
+                    for &to in border {
+                        add(face, from, to);
+                        from = to;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The edges whose lower vertex lies in one range of vertices; numbers begin with the range.
 struct Part {
     edges: Vec<[u32; 2]>,
-    use_ends: Vec<u32>,
-    uses: Vec<EdgeUse>,
+    pairs: Vec<[EdgeUse; 2]>,
+    many_ends: Vec<u32>,
+    many: Vec<EdgeUse>,
+    first_edges: Vec<u32>,
 }
 
 impl Part {
-    fn collect(corners: &[u32], face_starts: &[u32], vertices: std::ops::Range<u32>) -> Self {
+    fn collect(corners: &[u32], faces: Faces, vertices: std::ops::Range<u32>) -> Self {
         let n_vertices = vertices.len();
         let mut starts = vec![0u32; n_vertices + 1];
-        for_each_use(corners, face_starts, |low, _, _| {
+        faces.for_each_use(corners, |low, _, _| {
             if vertices.contains(&low) {
                 starts[(low - vertices.start) as usize + 1] += 1;
             }
@@ -159,47 +250,67 @@ impl Part {
         for i in 0..n_vertices {
             starts[i + 1] += starts[i];
         }
-        let mut entries: Vec<Entry> = vec![Entry::default(); starts[n_vertices] as usize];
-        let mut next = starts.clone();
-        for_each_use(corners, face_starts, |low, high, edge_use| {
+        // One use of an edge each: the higher vertex in the upper half.
+        let mut entries = vec![0u64; starts[n_vertices] as usize];
+        // The start of each vertex moves to where the next one starts.
+        faces.for_each_use(corners, |low, high, edge_use| {
             if vertices.contains(&low) {
-                let slot = &mut next[(low - vertices.start) as usize];
-                entries[*slot as usize] = (high, edge_use);
+                let slot = &mut starts[(low - vertices.start) as usize];
+                entries[*slot as usize] = u64::from(high) << 32 | u64::from(edge_use.packed);
                 *slot += 1;
             }
         });
         let mut part = Self {
-            edges: Vec::with_capacity(entries.len() / 2),
-            use_ends: Vec::with_capacity(entries.len() / 2),
-            uses: Vec::with_capacity(entries.len()),
+            edges: Vec::with_capacity(entries.len() / 2 + 16),
+            pairs: Vec::with_capacity(entries.len() / 2 + 16),
+            many_ends: Vec::new(),
+            many: Vec::new(),
+            first_edges: Vec::with_capacity(n_vertices),
         };
-        for (low, range) in (vertices).zip(starts.windows(2)) {
-            let bucket = &mut entries[range[0] as usize..range[1] as usize];
-            bucket.sort_unstable();
-            for &(high, edge_use) in bucket.iter() {
-                if part.edges.last() != Some(&[low, high]) {
-                    part.edges.push([low, high]);
-                    part.use_ends.push(0);
-                }
-                part.uses.push(edge_use);
-                if let Some(end) = part.use_ends.last_mut() {
-                    *end = part.uses.len() as u32;
-                }
+        let mut start = 0;
+        for (low, &end) in vertices.zip(&starts) {
+            part.first_edges.push(part.edges.len() as u32);
+            let bucket = &mut entries[start as usize..end as usize];
+            start = end;
+            sort(bucket);
+            for uses in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
+                part.push(low, uses);
             }
         }
         part
     }
+
+    /// Adds the edge from `low` that these entries are uses of.
+    fn push(&mut self, low: u32, entries: &[u64]) {
+        let edge_use = |entry: u64| EdgeUse { packed: entry as u32 };
+        let pair = match *entries {
+            [one] => [edge_use(one), EdgeUse::NONE],
+            [one, other] => [edge_use(one), edge_use(other)],
+            _ => {
+                self.many.extend(entries.iter().map(|&entry| edge_use(entry)));
+                self.many_ends.push(self.many.len() as u32);
+                [EdgeUse { packed: self.many_ends.len() as u32 - 1 }, EdgeUse::MANY]
+            }
+        };
+        self.edges.push([low, (entries[0] >> 32) as u32]);
+        self.pairs.push(pair);
+    }
 }
 
-/// Calls `f` with the lower vertex and the higher vertex of every use of an edge, and the use.
-fn for_each_use(corners: &[u32], face_starts: &[u32], mut f: impl FnMut(u32, u32, EdgeUse)) {
-    for (face, range) in face_starts.windows(2).enumerate() {
-        let border = &corners[range[0] as usize..range[1] as usize];
-        let Some(&last) = border.last() else { continue };
-        let mut from = last;
-        for &to in border {
-            f(from.min(to), from.max(to), EdgeUse::new(face, from < to));
-            from = to;
+/// Sorts a few numbers by insertion, many as usual.
+fn sort(numbers: &mut [u64]) {
+    const FEW: usize = 24;
+    if numbers.len() > FEW {
+        numbers.sort_unstable();
+        return;
+    }
+    for i in 1..numbers.len() {
+        let number = numbers[i];
+        let mut at = i;
+        while at > 0 && numbers[at - 1] > number {
+            numbers[at] = numbers[at - 1];
+            at -= 1;
         }
+        numbers[at] = number;
     }
 }

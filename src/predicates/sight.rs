@@ -38,6 +38,7 @@ pub struct Sight<'a> {
     forward: DVec3,
     near: f64,
     in_window: bool,
+    size: f64,
     n_exact: AtomicU64,
 }
 
@@ -122,11 +123,30 @@ impl<'a> Sight<'a> {
             Projection::Perspective { near, .. } => (Viewpoint::Eye(camera.eye()), near),
             Projection::Orthographic => (Viewpoint::Direction(forward), 0.0),
         };
-        let vertices = &positions[..n_vertices];
-        let in_window = vertices.par_iter().with_min_len(1 << 14).all(fits_filter)
-            && [forward, camera.eye()].iter().all(fits_filter);
+        let eye = camera.eye();
+        let size_of = |p: &DVec3| (p - eye).abs().element_sum() + p.abs().element_sum();
+        let both = |a: (bool, f64), b: (bool, f64)| (a.0 && b.0, a.1.max(b.1));
+        let (vertices, constructed) = positions.split_at(n_vertices);
+        let (fit, size) = vertices
+            .par_iter()
+            .with_min_len(1 << 14)
+            .map(|p| (fits_filter(p), size_of(p)))
+            .reduce(|| (true, 0.0), both);
+        let size = constructed.iter().map(size_of).fold(size, f64::max);
+        let in_window = fit && [forward, eye].iter().all(fits_filter);
         let n_exact = AtomicU64::new(0);
-        Self { positions, pierced, n_vertices, viewpoint, forward, near, in_window, n_exact }
+        Self { positions, pierced, n_vertices, viewpoint, forward, near, in_window, size, n_exact }
+    }
+
+    /// Whether all numbers are of sizes for which the bounds of the floating-point filters hold.
+    pub fn has_filters(&self) -> bool {
+        self.in_window
+    }
+
+    /// The largest number, in model units, that goes into the image of any point: distances from the
+    /// eye and from the origin added up, component by component.
+    pub fn size(&self) -> f64 {
+        self.size
     }
 
     /// The points.

@@ -95,7 +95,8 @@ impl Job {
             None => None,
         };
         let scene = refined.as_ref().unwrap_or(&live.scene);
-        let (drawing, sheet) = strokes(self, scene, camera, notes, &mut run)?;
+        let extent = scene.extent(&camera);
+        let (drawing, sheet) = strokes(self, scene, camera, extent, notes, &mut run)?;
         run.draw(&drawing, &sheet, plot_options(self), &OptimizeOptions::for_drawings())
     }
 

@@ -4,8 +4,23 @@ use clap::builder::{StyledStr, ValueParser};
 use clap::{Arg, Command};
 
 /// Options that say where a drawing goes and what is printed about it: the page does that.
-const OF_FILES: [&str; 8] =
-    ["output", "format", "stats", "quiet", "verbose", "strict", "preset", "help"];
+const OF_FILES: [&str; 15] = [
+    "output",
+    "format",
+    "stats",
+    "quiet",
+    "verbose",
+    "strict",
+    "preset",
+    "help",
+    "turntable",
+    "views",
+    "each",
+    "list",
+    "shard",
+    "skip-existing",
+    "keep-going",
+];
 /// Options that stay as they were typed.
 const FIXED: [&str; 2] = ["threads", "color"];
 /// The commands that the viewer draws by.

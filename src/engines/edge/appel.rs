@@ -63,10 +63,13 @@ mod propagate;
 mod start;
 mod trace;
 
+use super::occluders::Occluders;
+use super::occlusion::{self, Visible};
 use super::roberts;
 use super::rounding::{Place, Rounding};
 use super::segment::Segment;
 use super::shadow::{Shadow, shadow};
+use super::sides::Sides;
 use super::sweep::Sweep;
 use super::{LineCounts, VisibilityOptions};
 use crate::classify::ViewedScene;
@@ -74,7 +77,7 @@ use crate::engines::visibility::Visibility;
 use crate::predicates::CutPlane;
 use ahead::cutting_edges_ahead;
 use box_join::Pairs;
-use cutting::Stars;
+use cutting::{Stars, cutting_edges};
 use near::near_triangles;
 use places::Places;
 use propagate::{Base, Levels};
@@ -82,92 +85,129 @@ use rayon::prelude::*;
 use start::{is_plain, layers_beyond, local_layers};
 use trace::{Change, Surroundings, Trace};
 
-pub(super) use cutting::Sides;
-
 /// How many segments make one piece of parallel work.
 const CHUNK: usize = 512;
 
 /// Finds the spans of all drawn edges of `view`, in their order.
 ///
 /// Expected cost: the triangles, once, for the indices; for each edge the cutting edges near its
-/// image and the triangles near it in space; and a few sight lines.
+/// image and the triangles near it in space; and a few sight lines. Where hidden layers need not be
+/// counted, only what is not certainly hidden is looked at; see [`occlusion`](super::occlusion).
 pub fn solve(view: &ViewedScene, options: &VisibilityOptions) -> (Visibility, LineCounts) {
-    let (segments, crossings) = apart(view, roberts::segments(view));
     let sides = Sides::new(view);
-    let (cutting, is_even) = sides.cutting_edges(view);
     let rounding = Rounding::new(view);
-    let Some(places) = Places::new(view, &rounding, &segments) else {
-        // No edge is drawn, or numbers are so large that their differences are not finite.
-        return roberts::solve(view, options);
+    let occluders = Occluders::new(view);
+    let Some(visible) = occlusion::cull(view, options, &rounding, &sides, &occluders) else {
+        let segments = roberts::segments(view, None);
+        return Appel { view, options, sides, rounding, occluders }.solve(segments);
     };
-    let boxes = places.of_segments(&rounding, &segments);
-    let ahead = cutting_edges_ahead(view, &rounding, &places, &segments, &boxes, &cutting);
-    let tolerance = options.contact_tolerance;
-    let near = near_triangles(view, &places, &segments, &boxes, tolerance);
-    drop(boxes);
-    let cut_by_near_plane = triangles_that_the_near_plane_cuts(view, &rounding);
-    let around = Surroundings {
-        cutting: &cutting,
-        ahead: &ahead,
-        near: &near,
-        rounding: &rounding,
-        cut_by_near_plane: &cut_by_near_plane,
-        contact_tolerance: options.contact_tolerance,
-    };
-    let mut is_end = vec![false; view.scene().mesh().positions().len()];
-    for &end in segments.iter().flatten().flat_map(|segment| &segment.ends) {
-        is_end[end as usize] = true;
-    }
-    let stars = Stars::new(view, &is_end);
-    let is_plain = (0..is_even.len() as u32)
-        .into_par_iter()
-        .map(|v| is_even[v as usize] && is_end[v as usize] && is_plain(view, &stars, v))
-        .collect();
-    let neighbors = Neighbors { sides: &sides, stars: &stars, is_plain };
-    let traced: Vec<Chunk> = segments
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(i, chunk)| Chunk::trace(view, &around, &neighbors, i * CHUNK, chunk))
-        .collect();
+    let Visible { lines, occluders } = visible;
+    let segments = roberts::segments(view, Some(&lines));
+    let (n_lines, n_triangles) = (view.selected().len(), view.scene().triangles().len());
+    let culled_triangles = (n_triangles - occluders.list().len()) as u64;
+    let appel = Appel { view, options, sides, rounding, occluders };
+    let (visibility, counts) = appel.solve(segments);
+    let culled_edges = (n_lines - lines.len()) as u64;
+    let counts = LineCounts { culled_edges, culled_triangles, ..counts };
+    (occlusion::with_hidden(&visibility, &lines, n_lines), counts)
+}
 
-    let mut starts = Starts::new(view, &segments, &traced);
-    starts.ask_sight_lines(view, &rounding, &places, &segments, &traced);
-    let n_odd = parity::count_odd(view, &sides, &segments, &starts.layers);
-    if n_odd > 0 {
-        // Which of the numbers is wrong is not known: Roberts does them all.
-        starts.n_failures += n_odd;
-        starts.layers.fill(None);
-    }
-    let partners =
-        if options.find_doubled { doubled::partners(view, &segments) } else { Pairs::default() };
-    let builder =
-        SpanBuilder { view, options, sides: &sides, partners: &partners, starts: &starts };
-    let parts: Vec<(Visibility, Vec<u32>)> = segments
-        .par_chunks(CHUNK)
-        .zip(&traced)
-        .enumerate()
-        .map(|(i, (chunk, traced))| builder.spans(i * CHUNK, &segments, chunk, traced))
-        .collect();
+/// A view, and what is known of it before any line is traced.
+struct Appel<'v, 'a> {
+    view: &'v ViewedScene<'a>,
+    options: &'v VisibilityOptions,
+    sides: Sides<'a>,
+    rounding: Rounding,
+    occluders: Occluders,
+}
 
-    let mut visibility = Visibility::default();
-    let mut counts = LineCounts { checksum_failures: starts.n_failures, ..LineCounts::default() };
-    let mut failed = Vec::new();
-    for ((part, without_start), traced) in parts.iter().zip(&traced) {
-        visibility.append(part);
-        failed.extend_from_slice(without_start);
-        counts.contour_crossings += traced.trace.crossings_tested;
-        counts.candidate_pairs += traced.trace.crossings_tested + traced.trace.triangles_tested;
+impl Appel<'_, '_> {
+    /// Finds the spans of some segments.
+    fn solve(&self, segments: Vec<Option<Segment>>) -> (Visibility, LineCounts) {
+        let Self { view, options, sides, rounding, occluders } = self;
+        let (segments, crossings) = apart(view, segments);
+        let Some(places) = Places::new(view, rounding, &segments) else {
+            // No edge is drawn, or numbers are so large that their differences are not finite.
+            let all: Vec<_> = segments.iter().zip(&crossings).map(|(a, b)| a.or(*b)).collect();
+            return roberts::solve_segments(view, options, &all);
+        };
+        let (cutting, is_even) = cutting_edges(view, sides, occluders);
+        let boxes = places.of_segments(rounding, &segments);
+        let ahead = cutting_edges_ahead(view, rounding, &places, &segments, &boxes, &cutting);
+        let tolerance = options.contact_tolerance;
+        let near = near_triangles(view, occluders, &places, &segments, &boxes, tolerance);
+        drop(boxes);
+        let cut_by_near_plane = triangles_that_the_near_plane_cuts(view, rounding);
+        let around = Surroundings {
+            cutting: &cutting,
+            ahead: &ahead,
+            near: &near,
+            rounding,
+            cut_by_near_plane: &cut_by_near_plane,
+            contact_tolerance: options.contact_tolerance,
+        };
+        let mut is_end = vec![false; view.scene().mesh().positions().len()];
+        for &end in segments.iter().flatten().flat_map(|segment| &segment.ends) {
+            is_end[end as usize] = true;
+        }
+        let stars = Stars::new(view, occluders, &is_end);
+        let is_plain = (0..is_even.len() as u32)
+            .into_par_iter()
+            .map(|v| is_even[v as usize] && is_end[v as usize] && is_plain(view, &stars, v))
+            .collect();
+        let neighbors = Neighbors { sides, occluders, stars: &stars, is_plain };
+        let traced: Vec<Chunk> = segments
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map(|(i, chunk)| Chunk::trace(view, &around, &neighbors, i * CHUNK, chunk))
+            .collect();
+
+        let mut starts = Starts::new(view, &segments, &traced);
+        starts.ask_sight_lines(self, &places, &segments, &traced);
+        // Without the culled triangles the surface is not closed.
+        let n_odd = match occluders.are_culled() {
+            true => 0,
+            false => parity::count_odd(view, sides, &segments, &starts.layers),
+        };
+        if n_odd > 0 {
+            // Which of the numbers is wrong is not known: Roberts does them all.
+            starts.n_failures += n_odd;
+            starts.layers.fill(None);
+        }
+        let partners = if options.find_doubled {
+            doubled::partners(view, rounding, &segments)
+        } else {
+            Pairs::default()
+        };
+        let builder = SpanBuilder { view, options, sides, partners: &partners, starts: &starts };
+        let parts: Vec<(Visibility, Vec<u32>)> = segments
+            .par_chunks(CHUNK)
+            .zip(&traced)
+            .enumerate()
+            .map(|(i, (chunk, traced))| builder.spans(i * CHUNK, &segments, chunk, traced))
+            .collect();
+
+        let mut visibility = Visibility::default();
+        let mut counts =
+            LineCounts { checksum_failures: starts.n_failures, ..LineCounts::default() };
+        let mut failed = Vec::new();
+        for ((part, without_start), traced) in parts.iter().zip(&traced) {
+            visibility.append(part);
+            failed.extend_from_slice(without_start);
+            counts.contour_crossings += traced.trace.crossings_tested;
+            counts.candidate_pairs += traced.trace.crossings_tested + traced.trace.triangles_tested;
+        }
+        counts.fallback_edges = failed.len() as u64;
+        counts.sight_lines = starts.n_sight_lines;
+        let mut again = crossings;
+        for &i in &failed {
+            again[i as usize] = segments[i as usize];
+        }
+        if again.iter().any(Option::is_some) {
+            visibility = replaced_by_roberts(view, options, &again, &visibility, &mut counts);
+        }
+        (visibility, counts)
     }
-    counts.fallback_edges = failed.len() as u64;
-    counts.sight_lines = starts.n_sight_lines;
-    let mut again = crossings;
-    for &i in &failed {
-        again[i as usize] = segments[i as usize];
-    }
-    if again.iter().any(Option::is_some) {
-        visibility = replaced_by_roberts(view, options, &again, &visibility, &mut counts);
-    }
-    (visibility, counts)
 }
 
 /// Splits segments into edges of faces and all other lines, each list with `None` for the rest.
@@ -180,8 +220,11 @@ fn apart(
 ) -> (Vec<Option<Segment>>, Vec<Option<Segment>>) {
     let n_edges = view.scene().topology().edges().len() as u32;
     let mut crossings = vec![None; segments.len()];
-    let first = view.selected().partition_point(|drawn| drawn.edge < n_edges);
-    crossings[first..].swap_with_slice(&mut segments[first..]);
+    for (segment, crossing) in segments.iter_mut().zip(&mut crossings) {
+        if segment.is_some_and(|segment| segment.edge >= n_edges) {
+            std::mem::swap(segment, crossing);
+        }
+    }
     (segments, crossings)
 }
 
@@ -198,6 +241,7 @@ fn triangles_that_the_near_plane_cuts(view: &ViewedScene, rounding: &Rounding) -
 /// What is around vertices.
 struct Neighbors<'n> {
     sides: &'n Sides<'n>,
+    occluders: &'n Occluders,
     stars: &'n Stars,
     /// Whether the triangles around a vertex lie side by side, once around.
     is_plain: Vec<bool>,
@@ -207,7 +251,8 @@ impl Neighbors<'_> {
     /// The layers of triangles around each end of a segment, just beyond it.
     fn local_layers(&self, view: &ViewedScene, segment: &Segment) -> [[i32; 2]; 2] {
         let plain = segment.ends.map(|end| self.is_plain[end as usize]);
-        let is_between = (plain[0] || plain[1]) && self.sides.is_even(view, segment.edge);
+        let is_between =
+            (plain[0] || plain[1]) && self.sides.is_even(view, self.occluders, segment.edge);
         [0, 1].map(|end| match is_between && plain[end] {
             true => [0; 2],
             false => local_layers(view, self.stars, segment.ends, end),
@@ -314,8 +359,7 @@ impl Starts {
     /// One sight line for each set of vertices, and one for each segment that has no regular end.
     fn ask_sight_lines(
         &mut self,
-        view: &ViewedScene,
-        rounding: &Rounding,
+        appel: &Appel,
         places: &Places,
         segments: &[Option<Segment>],
         traced: &[Chunk],
@@ -342,7 +386,8 @@ impl Starts {
             }
         }
         let ends = questions.iter().map(|&(i, end, _)| (segments[i as usize].as_ref(), end));
-        let answers = layers_beyond(view, rounding, places, ends);
+        let Appel { view, rounding, occluders, .. } = appel;
+        let answers = layers_beyond(view, occluders, rounding, places, ends);
         self.n_sight_lines = questions.len() as u64;
         for (&(i, end, vertex), layers) in questions.iter().zip(answers) {
             let i = i as usize;

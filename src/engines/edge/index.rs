@@ -23,7 +23,7 @@ mod levels;
 use self::levels::{Level, levels};
 use super::VisibilityOptions;
 use super::back_faces::BackFaces;
-use super::rounding::{Bounds, Place, Rounding, Separation};
+use super::rounding::{Bounds, Place, Rounding, Separation, rounded_down, rounded_up};
 use super::segment::Segment;
 use crate::classify::ViewedScene;
 use glam::{DVec2, dvec2};
@@ -59,16 +59,6 @@ impl Entry {
             || self.nearest > segment.farthest
             || self.farthest < segment.nearest
     }
-}
-
-fn rounded_down(x: f64) -> f32 {
-    let rounded = x as f32;
-    if f64::from(rounded) > x { rounded.next_down() } else { rounded }
-}
-
-fn rounded_up(x: f64) -> f32 {
-    let rounded = x as f32;
-    if f64::from(rounded) < x { rounded.next_up() } else { rounded }
 }
 
 /// How many items make one piece of parallel work.

@@ -11,6 +11,9 @@
 //! triangle and the triangle is strictly in front. It covers both sides of the segment, except
 //! where the segment's image runs along one of its borders; there it covers only the side on which
 //! its third vertex lies. A point is hidden when both its sides are covered.
+//!
+//! Where only visible lines are wanted and many are drawn, [`appel`] first culls lines and triangles
+//! that certainly lie behind a surface (module `occlusion`), so that its cost follows what is visible.
 
 pub mod appel;
 pub mod lifted;
@@ -19,9 +22,12 @@ pub mod roberts;
 
 mod back_faces;
 mod index;
+mod occluders;
+mod occlusion;
 mod rounding;
 mod segment;
 mod shadow;
+mod sides;
 mod sweep;
 
 use crate::classify::ViewedScene;
@@ -38,6 +44,32 @@ pub struct VisibilityOptions {
     pub count_layers: bool,
     /// Whether to find the parts that a nearer drawn edge with the same image draws already.
     pub find_doubled: bool,
+    /// When [`appel`] leaves out what certainly lies behind a surface. The visible parts are the same
+    /// either way.
+    pub occlusion_culling: OcclusionCulling,
+}
+
+impl VisibilityOptions {
+    /// The default: contact is exact, layers are not counted, doubled parts not looked for.
+    pub const EXACT: Self = Self {
+        contact_tolerance: 0.0,
+        count_layers: false,
+        find_doubled: false,
+        occlusion_culling: OcclusionCulling::Auto,
+    };
+}
+
+/// When occlusion culling is tried. It is out of the question where layers are counted or the near
+/// plane cuts the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OcclusionCulling {
+    /// Where it is likely to save time: in large scenes of which many edges are drawn.
+    #[default]
+    Auto,
+    /// Always, for tests.
+    Always,
+    /// Never.
+    Never,
 }
 
 /// The line engines by name.
@@ -118,4 +150,8 @@ pub struct LineCounts {
     pub back_faces: u64,
     /// Edges between two such triangles: hidden without a test.
     pub back_edges: u64,
+    /// Triangles that were not tested, since they hide nothing visible.
+    pub culled_triangles: u64,
+    /// Drawn edges that were not tested, since they certainly lie behind a surface.
+    pub culled_edges: u64,
 }

@@ -20,11 +20,11 @@
 //!
 //! Coherence: object coherence, through the index over the image, as in Roberts.
 
-use super::appel::Sides;
 use super::index::{ImageIndex, Visitor};
 use super::rounding::Rounding;
 use super::segment::Segment;
 use super::shadow::{Cover, image_cover};
+use super::sides::Sides;
 use super::sweep::Sweep;
 use crate::classify::ViewedScene;
 use crate::engines::visibility::Span;

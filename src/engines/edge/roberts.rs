@@ -32,7 +32,7 @@ use super::segment::Segment;
 use super::shadow::{Shadow, Sides, shadow};
 use super::sweep::Sweep;
 use super::{LineCounts, VisibilityOptions};
-use crate::classify::ViewedScene;
+use crate::classify::{SelectedLine, ViewedScene};
 use crate::engines::visibility::{Span, Visibility};
 use crate::predicates::CutPlane;
 use rayon::prelude::*;
@@ -47,7 +47,7 @@ const CHUNK: usize = 512;
 /// image that no single nearer triangle hides.
 pub fn solve(view: &ViewedScene, options: &VisibilityOptions) -> (Visibility, LineCounts) {
     let back_faces = BackFaces::new(view, options);
-    solve_without(&back_faces, view, options, &segments(view))
+    solve_without(&back_faces, view, options, &segments(view, None))
 }
 
 /// Finds the spans of some segments of `view`, in their order.
@@ -76,7 +76,7 @@ pub fn solve_all_pairs(
     view: &ViewedScene,
     options: &VisibilityOptions,
 ) -> (Visibility, LineCounts) {
-    run(view, options, &segments(view), None, Asked::Layers)
+    run(view, options, &segments(view, None), None, Asked::Layers)
 }
 
 /// Finds where each drawn line of `view` is hidden on one of its sides and not on the other: there spans
@@ -84,7 +84,7 @@ pub fn solve_all_pairs(
 ///
 /// In the light's view these are the borders of shadows.
 pub fn solve_borders(view: &ViewedScene, options: &VisibilityOptions) -> Visibility {
-    let (back_faces, segments) = (BackFaces::default(), segments(view));
+    let (back_faces, segments) = (BackFaces::default(), segments(view, None));
     let index = ImageIndex::new(view, segments.iter().flatten(), options, &back_faces);
     run(view, options, &segments, Some((&index, &back_faces)), Asked::Borders).0
 }
@@ -98,9 +98,14 @@ enum Asked {
     Borders,
 }
 
-/// The drawn edges as segments.
-pub(super) fn segments(view: &ViewedScene) -> Vec<Option<Segment>> {
-    view.selected().par_iter().map(|drawn| Segment::new(view, drawn.edge)).collect()
+/// The drawn lines as segments; all of them, or those at some places of the list.
+pub(super) fn segments(view: &ViewedScene, wanted: Option<&[u32]>) -> Vec<Option<Segment>> {
+    let drawn = view.selected();
+    let segment = |line: &SelectedLine| Segment::new(view, line.edge);
+    match wanted {
+        None => drawn.par_iter().map(segment).collect(),
+        Some(wanted) => wanted.par_iter().map(|&i| segment(&drawn[i as usize])).collect(),
+    }
 }
 
 fn run(

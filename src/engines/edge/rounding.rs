@@ -3,18 +3,10 @@
 //! Nothing here decides visibility: in doubt, an item counts as near.
 
 use super::segment::Segment;
-use crate::camera::ImagePoint;
+use crate::camera::{ImageError, ImagePoint};
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
-
-/// Image coordinates are within this, times the square of their distance from the center plus one,
-/// of the truth: they take about a dozen roundings of numbers that large.
-const IMAGE_ERROR: f64 = 32.0 * f64::EPSILON;
-
-/// Depths are within this part of the largest number that goes into them.
-const DEPTH_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// A box in the image and the range of depths in it, rounded outwards.
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +45,18 @@ impl Bounds {
     }
 }
 
+/// The largest single-precision number not above `x`.
+pub(super) fn rounded_down(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) > x { rounded.next_down() } else { rounded }
+}
+
+/// The smallest single-precision number not below `x`.
+pub(super) fn rounded_up(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) < x { rounded.next_up() } else { rounded }
+}
+
 /// Where an item goes in an index.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
@@ -67,37 +71,27 @@ pub(super) enum Place {
 /// The error bounds of a view.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rounding {
-    /// In orthographic projection the error does not depend on the place.
-    flat_error: Option<f64>,
-    depth_error: f64,
+    error: ImageError,
 }
 
 impl Rounding {
     pub(super) fn new(view: &ViewedScene) -> Self {
-        let eye = view.camera().eye();
-        let largest = view
-            .sight()
-            .positions()
-            .par_iter()
-            .map(|&p| (p - eye).abs().element_sum() + p.abs().element_sum())
-            .reduce(|| 0.0, f64::max);
-        let flat_error = (!view.sight().has_near_plane()).then_some(IMAGE_ERROR * largest);
-        Self { flat_error, depth_error: DEPTH_ERROR * largest }
+        Self { error: view.image_error() }
     }
 
     /// How far a depth may be off.
     pub(super) fn depth_error(&self) -> f64 {
-        self.depth_error
+        self.error.of_depth()
     }
 
     /// Whether images are unbounded, as they are in perspective near the eye's plane.
     pub(super) fn is_unbounded(&self) -> bool {
-        self.flat_error.is_none()
+        self.error.is_unbounded()
     }
 
     /// How far an image coordinate up to `size` in absolute value may be off.
     pub(super) fn image_error(&self, size: f64) -> f64 {
-        self.flat_error.unwrap_or(IMAGE_ERROR * (1.0 + size) * (1.0 + size))
+        self.error.of_coordinate(size)
     }
 
     /// The box of some points of the image with their depths.
@@ -108,8 +102,8 @@ impl Rounding {
         Bounds {
             low: low - error,
             high: high + error,
-            nearest: depths.iter().copied().fold(f64::INFINITY, f64::min) - self.depth_error,
-            farthest: depths.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth_error,
+            nearest: depths.iter().copied().fold(f64::INFINITY, f64::min) - self.depth_error(),
+            farthest: depths.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth_error(),
         }
     }
 

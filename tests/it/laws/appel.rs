@@ -65,8 +65,12 @@ fn lines_drawn_twice_are_found_as_roberts_finds_them() {
             for (contact_tolerance, count_layers) in
                 [(0.0, true), (0.0, false), (0.3, true), (1e-6, false)]
             {
-                let settings =
-                    VisibilityOptions { contact_tolerance, count_layers, find_doubled: true };
+                let settings = VisibilityOptions {
+                    contact_tolerance,
+                    count_layers,
+                    find_doubled: true,
+                    ..VisibilityOptions::EXACT
+                };
                 assert_equal(&scene.name, &view, &settings);
             }
         }
@@ -117,19 +121,15 @@ fn models_are_drawn_as_roberts_draws_them() {
             for (lines, settings) in [
                 (
                     LineSelection::all_edges(),
-                    VisibilityOptions {
-                        contact_tolerance: 0.0,
-                        count_layers: true,
-                        find_doubled: false,
-                    },
+                    VisibilityOptions { count_layers: true, ..VisibilityOptions::EXACT },
                 ),
                 (
                     LineSelection::default(),
                     VisibilityOptions {
                         contact_tolerance: size
                             * hiddenline::stages::draw::DEFAULT_CONTACT_TOLERANCE,
-                        count_layers: false,
                         find_doubled: true,
+                        ..VisibilityOptions::EXACT
                     },
                 ),
             ] {

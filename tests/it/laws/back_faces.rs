@@ -11,8 +11,7 @@ use hiddenline::stages::engines::edge::{LineCounts, LineEngine, VisibilityOption
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 
-const VISIBLE_ONLY: VisibilityOptions =
-    VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+const VISIBLE_ONLY: VisibilityOptions = VisibilityOptions::EXACT;
 
 fn add(soup: &mut PolygonSoup, points: &[DVec3], faces: &[&[u32]]) {
     let first = soup.positions.len() as u32;

@@ -44,8 +44,7 @@ fn picture(scene: &Scene, camera: &Camera, engine: LineEngine) -> Picture {
     let lines =
         LineSelection::NONE.with(StrokeKind::Silhouette).with(StrokeKind::Boundary).with_outline();
     let view = ViewedScene::new(scene, camera, lines, 30.0);
-    let settings =
-        VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let settings = VisibilityOptions::EXACT;
     let (visibility, _, _) = solve(&view, engine, &settings);
     let outline = outline::find(&view);
     let mut picture = Picture::new();

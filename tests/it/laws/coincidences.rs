@@ -70,8 +70,11 @@ fn level_lines_drawn_twice_are_found_whichever_way_rounding_tilts_them() {
         let test = model.seen_by(format!("seed {seed}"), orthographic(forward, [0.0, 0.0, 1.0]));
         let scene = Scene::new(mesh(&test));
         let view = ViewedScene::new(&scene, &camera(&test), LineSelection::all_edges(), 30.0);
-        let settings =
-            VisibilityOptions { contact_tolerance: 0.0, count_layers: true, find_doubled: true };
+        let settings = VisibilityOptions {
+            count_layers: true,
+            find_doubled: true,
+            ..VisibilityOptions::EXACT
+        };
         let (expected, _, _) = solve(&view, LineEngine::AllPairs, &settings);
         let (found, _, _) = solve(&view, LineEngine::Appel, &settings);
         for i in 0..found.len() {

@@ -12,8 +12,7 @@ use hiddenline::stages::engines::visibility::Visibility;
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 
-const VISIBLE_ONLY: VisibilityOptions =
-    VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+const VISIBLE_ONLY: VisibilityOptions = VisibilityOptions::EXACT;
 
 /// Faces in a frame of their own: x to the right, y away from the eye, z up.
 #[derive(Default)]

@@ -64,7 +64,7 @@ pub(crate) fn solve_with(
 }
 
 const COUNTED: VisibilityOptions =
-    VisibilityOptions { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
+    VisibilityOptions { count_layers: true, ..VisibilityOptions::EXACT };
 
 fn all_edges(scene: &TestScene, engine: LineEngine) -> Option<Vec<EngineEdge>> {
     let drawn = solve_with(scene, engine, LineSelection::all_edges(), &COUNTED);

@@ -21,6 +21,7 @@ mod intersections;
 mod invariance;
 mod layers;
 mod materials;
+mod occlusion;
 mod outline;
 mod predicates;
 mod short_strokes;

@@ -19,7 +19,7 @@ const WIRES: LineSelection = LineSelection::NONE.with(StrokeKind::Wire);
 const ENGINES: [LineEngine; 3] = [LineEngine::Roberts, LineEngine::Appel, LineEngine::AllPairs];
 
 const COUNTED: VisibilityOptions =
-    VisibilityOptions { contact_tolerance: 0.0, count_layers: true, find_doubled: false };
+    VisibilityOptions { count_layers: true, ..VisibilityOptions::EXACT };
 
 /// The scene's mesh as soup.
 fn soup(scene: &TestScene) -> PolygonSoup {

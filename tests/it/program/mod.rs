@@ -7,6 +7,7 @@ mod empty;
 pub(crate) mod fill;
 mod hatch;
 mod hidden_levels;
+mod many;
 mod materials;
 mod mistakes;
 mod models;

@@ -13,13 +13,12 @@
 //! ```
 //!
 //! Neither normals nor winding matter, so open, non-manifold and badly wound meshes need no special cases.
-//! Edge-on triangles cover nothing and are not counted.
+//! Only triangles that hide something count.
 
+use super::super::occluders::Occluders;
+use super::super::sides::Sides;
 use crate::classify::ViewedScene;
-use crate::model::topology::Topology;
-use crate::predicates::Sign;
 use rayon::prelude::*;
-use std::borrow::Cow;
 
 /// A side of triangles with more of them on one side of its image than on the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,116 +31,36 @@ pub(super) struct CuttingEdge {
     pub triangle: u32,
 }
 
-/// The sides of all triangles with the triangles along each.
-#[derive(Debug)]
-pub(in super::super) struct Sides<'a> {
-    table: Cow<'a, Topology>,
-    /// The faces are the triangles, so that sides have the numbers of edges.
-    sides_are_edges: bool,
-}
-
-impl<'a> Sides<'a> {
-    /// The sides of the triangles of a scene. O(triangles) when faces have more than three corners.
-    pub(in super::super) fn new(view: &ViewedScene<'a>) -> Self {
-        let scene = view.scene();
-        let triangles = scene.triangles();
-        // A face of n corners makes n − 2 triangles: as many as faces means that they are the same.
-        let sides_are_edges = triangles.len() == scene.mesh().n_faces();
-        let table = if sides_are_edges {
-            Cow::Borrowed(scene.topology())
-        } else {
-            let n_vertices = scene.mesh().positions().len();
-            Cow::Owned(Topology::of_triangles(triangles, n_vertices))
-        };
-        Self { table, sides_are_edges }
-    }
-
-    /// Whether every side has an even number of triangles, so that they enclose whatever they do.
-    pub(super) fn are_closed(&self) -> bool {
-        let n_sides = self.table.edges().len() as u32;
-        (0..n_sides)
-            .into_par_iter()
-            .with_min_len(4096)
-            .all(|side| self.table.uses(side).len().is_multiple_of(2))
-    }
-
-    /// The triangles along an edge, each with whether it runs along it upwards.
-    pub(in super::super) fn along_edge(
-        &self,
-        view: &ViewedScene,
-        edge: u32,
-    ) -> impl Iterator<Item = (u32, bool)> {
-        self.side(view, edge).into_iter().flat_map(|side| self.along(side))
-    }
-
-    /// The side that is an edge; some edges of faces without area are none.
-    fn side(&self, view: &ViewedScene, edge: u32) -> Option<u32> {
-        if self.sides_are_edges {
-            return Some(edge);
-        }
-        let [p, q] = view.line(edge);
-        self.table.find_edge(p, q)
-    }
-
-    fn along(&self, side: u32) -> impl Iterator<Item = (u32, bool)> {
-        self.table.uses(side).iter().map(|along| (along.face(), along.runs_upwards()))
-    }
-
-    /// How many of the triangles that count lie on the left and on the right of a side, and one of
-    /// them.
-    fn count(&self, view: &ViewedScene, side: u32) -> ([i32; 2], Option<u32>) {
-        let (mut counts, mut last) = ([0; 2], None);
-        for (triangle, upwards) in self.along(side) {
-            if is_counted(view, triangle) {
-                let turn = view.triangle_turns()[triangle as usize];
-                counts[usize::from((turn == Sign::Positive) != upwards)] += 1;
-                last = Some(triangle);
-            }
-        }
-        (counts, last)
-    }
-
-    /// Whether an edge has exactly one triangle that counts on each side.
-    pub(super) fn is_even(&self, view: &ViewedScene, edge: u32) -> bool {
-        let side = self.side(view, edge);
-        side.is_some_and(|side| self.count(view, side).0 == [1; 2])
-    }
-
-    /// The sides at which the number of layers changes, in their order, and for each vertex whether
-    /// all its sides are even: with one triangle left and right, or none at all.
-    ///
-    /// O(triangles), in parallel.
-    pub(super) fn cutting_edges(&self, view: &ViewedScene) -> (Vec<CuttingEdge>, Vec<bool>) {
-        let uneven: Vec<CuttingEdge> = (0..self.table.edges().len() as u32)
-            .into_par_iter()
-            .with_min_len(4096)
-            .filter_map(|side| {
-                let ([left, right], last) = self.count(view, side);
-                let triangle = last.filter(|_| [left, right] != [1; 2])?;
-                Some(CuttingEdge { ends: self.table.edge(side), step: left - right, triangle })
-            })
-            .collect();
-        let mut is_even = vec![true; view.scene().mesh().positions().len()];
-        for end in uneven.iter().flat_map(|edge| edge.ends) {
-            is_even[end as usize] = false;
-        }
-        (uneven.into_iter().filter(|edge| edge.step != 0).collect(), is_even)
-    }
-}
-
-/// Whether a triangle covers anything and is wholly beyond the near plane.
+/// The sides at which the number of layers changes, in their order, and for each vertex whether all
+/// its sides are even: with one triangle left and right, or none at all.
 ///
-/// Triangles that the near plane cuts do not enter the carried `qi`; they are tested one by one.
-#[inline]
-pub(super) fn is_counted(view: &ViewedScene, triangle: u32) -> bool {
-    if view.triangle_turns()[triangle as usize] == Sign::Zero {
-        return false;
+/// O(sides), in parallel.
+pub(super) fn cutting_edges(
+    view: &ViewedScene,
+    sides: &Sides,
+    occluders: &Occluders,
+) -> (Vec<CuttingEdge>, Vec<bool>) {
+    let uneven = |side: u32| {
+        let ([left, right], last) = sides.count(view, occluders, side);
+        let triangle = last.filter(|_| [left, right] != [1; 2])?;
+        Some(CuttingEdge { ends: sides.ends(side), step: left - right, triangle })
+    };
+    let n_sides = sides.len() as u32;
+    let uneven: Vec<CuttingEdge> = match view.uneven_edges() {
+        // Sides are edges then, and all triangles that face the eye or face away are occluders.
+        Some(edges) if !occluders.are_culled() && !view.near_plane_cuts() => {
+            edges.par_iter().with_min_len(4096).filter_map(|&edge| uneven(edge)).collect()
+        }
+        _ => (0..n_sides).into_par_iter().with_min_len(4096).filter_map(uneven).collect(),
+    };
+    let mut is_even = vec![true; view.scene().mesh().positions().len()];
+    for end in uneven.iter().flat_map(|edge| edge.ends) {
+        is_even[end as usize] = false;
     }
-    let is_kept = |&corner: &u32| view.sight().near_distance(corner).1 != Sign::Negative;
-    !view.near_plane_cuts() || view.scene().triangles()[triangle as usize].iter().all(is_kept)
+    (uneven.into_iter().filter(|edge| edge.step != 0).collect(), is_even)
 }
 
-/// The triangles around vertices, of those that count.
+/// The triangles around vertices, of those that hide something.
 #[derive(Debug)]
 pub(super) struct Stars {
     starts: Vec<u32>,
@@ -149,16 +68,12 @@ pub(super) struct Stars {
 }
 
 impl Stars {
-    /// The triangles around each vertex that is `wanted`. O(triangles).
-    pub(super) fn new(view: &ViewedScene, wanted: &[bool]) -> Self {
+    /// The occluders around each vertex that is `wanted`. O(vertices + occluders).
+    pub(super) fn new(view: &ViewedScene, occluders: &Occluders, wanted: &[bool]) -> Self {
         let triangles = view.scene().triangles();
-        let counted: Vec<bool> = (0..triangles.len() as u32)
-            .into_par_iter()
-            .map(|triangle| is_counted(view, triangle))
-            .collect();
         let mut starts = vec![0u32; wanted.len() + 1];
-        for (corners, _) in triangles.iter().zip(&counted).filter(|(_, counted)| **counted) {
-            for &corner in corners {
+        for &triangle in occluders.list() {
+            for corner in triangles[triangle as usize] {
                 starts[corner as usize + 1] += u32::from(wanted[corner as usize]);
             }
         }
@@ -167,10 +82,11 @@ impl Stars {
         }
         let mut around = vec![0; starts.last().map_or(0, |&n| n as usize)];
         let mut next = starts.clone();
-        for (triangle, corners) in triangles.iter().enumerate().filter(|(i, _)| counted[*i]) {
-            for &corner in corners.iter().filter(|&&corner| wanted[corner as usize]) {
+        for &triangle in occluders.list() {
+            let corners = triangles[triangle as usize];
+            for corner in corners.into_iter().filter(|&corner| wanted[corner as usize]) {
                 let slot = &mut next[corner as usize];
-                around[*slot as usize] = triangle as u32;
+                around[*slot as usize] = triangle;
                 *slot += 1;
             }
         }

@@ -75,8 +75,11 @@ impl Line {
 
 /// For each of `segments` those that may be on the same line of the image. Expected O(n log n); in
 /// parallel.
-pub(super) fn partners(view: &ViewedScene, segments: &[Option<Segment>]) -> Pairs {
-    let rounding = Rounding::new(view);
+pub(super) fn partners(
+    view: &ViewedScene,
+    rounding: &Rounding,
+    segments: &[Option<Segment>],
+) -> Pairs {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for point in segments.iter().flatten().flat_map(|segment| segment.image) {
         (low, high) = (low.min(point), high.max(point));
@@ -88,7 +91,7 @@ pub(super) fn partners(view: &ViewedScene, segments: &[Option<Segment>]) -> Pair
     let mut loose = Vec::new();
     let lines: Vec<Option<Line>> = segments
         .par_iter()
-        .map(|segment| Line::new(segment.as_ref()?, &rounding, center, radius))
+        .map(|segment| Line::new(segment.as_ref()?, rounding, center, radius))
         .collect();
     for (i, line) in lines.iter().enumerate() {
         match line {
@@ -111,9 +114,9 @@ pub(super) fn partners(view: &ViewedScene, segments: &[Option<Segment>]) -> Pair
     let mut pairs: Vec<(u32, u32)> = bins
         .par_iter()
         .filter(|bin| bin.len() > 1)
-        .flat_map_iter(|bin| pairs_in_bin(view, segments, &rounding, bin))
+        .flat_map_iter(|bin| pairs_in_bin(view, segments, rounding, bin))
         .collect();
-    pairs.extend(pairs_by_place(view, segments, &loose));
+    pairs.extend(pairs_by_place(view, rounding, segments, &loose));
     pairs.par_sort_unstable();
     pairs.dedup();
     Pairs::new(segments.len(), pairs)
@@ -182,6 +185,7 @@ fn pairs_in_bin(
 /// Pairs with an edge of `loose`, found by their boxes in the image.
 fn pairs_by_place(
     view: &ViewedScene,
+    rounding: &Rounding,
     segments: &[Option<Segment>],
     loose: &[u32],
 ) -> Vec<(u32, u32)> {
@@ -189,7 +193,6 @@ fn pairs_by_place(
     if loose.is_empty() {
         return pairs;
     }
-    let rounding = Rounding::new(view);
     let wanted = loose.iter().filter_map(|&i| segments[i as usize].as_ref());
     let index = ImageIndex::of_items(view, wanted, segments.len(), None, |i| {
         segments[i as usize].as_ref().map_or(Place::Nowhere, |segment| {

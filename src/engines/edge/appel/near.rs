@@ -6,19 +6,20 @@
 //! Points in near contact are behind the triangle on a sight line through it, so its box has to be enlarged
 //! in depth only, though by much where the triangle is nearly edge-on.
 
+use super::super::occluders::Occluders;
 use super::super::segment::Segment;
 use super::box_join::{LatticeBox, Pairs, meeting_pairs};
-use super::cutting::is_counted;
 use super::places::Places;
 use crate::classify::ViewedScene;
 use crate::predicates::{Sign, Viewpoint};
 use rayon::prelude::*;
 
-/// The triangles near each segment, of those that lie wholly beyond the near plane.
+/// The occluders near each segment.
 ///
-/// `boxes` are those of the segments. Expected cost: segments and triangles, once.
+/// `boxes` are those of the segments. Expected cost: segments and occluders, once.
 pub(super) fn near_triangles(
     view: &ViewedScene,
+    occluders: &Occluders,
     places: &Places,
     segments: &[Option<Segment>],
     boxes: &[LatticeBox],
@@ -29,9 +30,9 @@ pub(super) fn near_triangles(
         .map(|segment| segment.as_ref().map_or([0; 2], |segment| segment.ends))
         .collect();
     let near = Near { view, contact_tolerance, ends, places };
-    let second = |triangle| near.box_of_triangle(triangle);
-    let n_triangles = view.scene().triangles().len();
-    let pairs = meeting_pairs(boxes, n_triangles, second, |triangle, meeting, found| {
+    let list = occluders.list();
+    let second = |i: u32| near.box_of_triangle(list[i as usize]);
+    let pairs = meeting_pairs(boxes, list.len(), second, |triangle, meeting, found| {
         near.push_meetings(triangle, meeting, found);
     });
     Pairs::new(segments.len(), pairs)
@@ -46,13 +47,10 @@ struct Near<'n, 'a> {
 }
 
 impl Near<'_, '_> {
-    /// The box of a triangle with all points behind it that are in near contact with its plane;
-    /// `None` when it covers nothing or is not [counted](is_counted).
+    /// The box of a triangle with all points behind it that are in near contact with its plane; `None`
+    /// when it lies beside all segments.
     #[inline]
     fn box_of_triangle(&self, triangle: u32) -> Option<LatticeBox> {
-        if !is_counted(self.view, triangle) {
-            return None;
-        }
         let corners = self.view.scene().triangles()[triangle as usize];
         let mut place = self.places.around(corners);
         if self.contact_tolerance > 0.0 {

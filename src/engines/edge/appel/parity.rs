@@ -15,7 +15,7 @@
 use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Shadow, image_cover, shadow};
-use super::cutting::Sides;
+use super::super::sides::Sides;
 use crate::classify::ViewedScene;
 use crate::predicates::CutPlane;
 use rayon::prelude::*;
@@ -82,7 +82,7 @@ fn not_in_front(view: &ViewedScene, rounding: &Rounding, segment: &Segment) -> [
 #[cfg(test)]
 mod tests {
     use super::super::super::roberts;
-    use super::Sides;
+    use super::super::super::sides::Sides;
     use super::count_odd;
     use crate::camera::{Camera, Projection};
     use crate::classify::{LineSelection, ViewedScene};
@@ -117,7 +117,7 @@ mod tests {
         {
             let camera = Camera::new(eye, DVec3::ZERO, DVec3::Z, projection).expect("a camera");
             let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
-            let segments = roberts::segments(&view);
+            let segments = roberts::segments(&view, None);
             // What covers each segment's beginning, by Roberts with all layers.
             let options = super::super::super::VisibilityOptions {
                 count_layers: true,

@@ -1,10 +1,11 @@
 //! How many layers lie over a segment where it leaves one of its ends.
 
+use super::super::occluders::Occluders;
 use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Sides, side_of};
 use super::box_join::{LatticeBox, Place, meeting_pairs};
-use super::cutting::{Stars, is_counted};
+use super::cutting::Stars;
 use super::places::Places;
 use crate::classify::ViewedScene;
 use crate::predicates::Sign;
@@ -134,11 +135,12 @@ pub(super) fn local_layers(
     layers
 }
 
-/// How many triangles cover each of some segments just beyond one of its ends, by sight lines.
+/// How many occluders cover each of some segments just beyond one of its ends, by sight lines.
 ///
-/// O(triangles), and the triangles whose image's box holds an end's image.
+/// O(occluders), and the occluders whose image's box holds an end's image.
 pub(super) fn layers_beyond<'s>(
     view: &ViewedScene,
+    occluders: &Occluders,
     rounding: &Rounding,
     places: &Places,
     ends: impl Iterator<Item = (Option<&'s Segment>, usize)>,
@@ -155,12 +157,12 @@ pub(super) fn layers_beyond<'s>(
             flat(places.lattice.place(bounds.corners()), i)
         })
         .collect();
-    let second = |triangle| {
-        let corners = view.scene().triangles()[triangle as usize];
-        is_counted(view, triangle).then(|| flat(places.around(corners), triangle))?
+    let list = occluders.list();
+    let second = |i: u32| {
+        let triangle = list[i as usize];
+        flat(places.around(view.scene().triangles()[triangle as usize]), triangle)
     };
-    let n_triangles = view.scene().triangles().len();
-    let found = meeting_pairs(&first, n_triangles, second, |triangle, meeting, found| {
+    let found = meeting_pairs(&first, list.len(), second, |triangle, meeting, found| {
         for &i in meeting {
             if let (Some(segment), end) = questions[i as usize] {
                 found.push((i, covers_beyond(view, segment.ends, end, triangle)));

@@ -270,8 +270,7 @@ fn an_eye_nearly_in_the_plane_of_a_grid_line_loses_nothing_of_it() {
     mesh.push_grid(&grid, &all);
     let surface = mesh.into_scene().expect("a scene");
     let view = ViewedScene::with_edges(&surface.scene, &camera, surface.lines.clone());
-    let settings =
-        VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let settings = VisibilityOptions::EXACT;
     let (expected, ..) = engine(&view, LineEngine::AllPairs, &settings);
     let visible = |k: usize| -> f64 {
         expected.spans(k).iter().filter(|span| span.qi == 0).map(|span| span.t1 - span.t0).sum()

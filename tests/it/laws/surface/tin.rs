@@ -45,8 +45,7 @@ fn difference(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
 /// Whether the horizons could draw it; panics where they differ from all pairs.
 fn check(surface: &LinedScene, camera: &Camera, name: &str) -> bool {
     let view = ViewedScene::with_edges(&surface.scene, camera, surface.lines.clone());
-    let settings =
-        VisibilityOptions { contact_tolerance: 0.0, count_layers: false, find_doubled: false };
+    let settings = VisibilityOptions::EXACT;
     let Some((by_horizons, _)) = tin::solve(&view) else { return false };
     let (in_strips, _) = tin::solve_in_strips(&view, 3).expect("as in one strip");
     let (expected, ..) = solve(&view, LineEngine::AllPairs, &settings);
