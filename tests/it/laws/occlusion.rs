@@ -170,7 +170,7 @@ fn layers(rng: &mut Rng) -> PolygonSoup {
 
 #[test]
 fn layers_with_holes_and_folds_are_drawn_the_same() {
-    let n_scenes = number_of_scenes(5);
+    let n_scenes = number_of_scenes(2);
     let (mut n_culled, mut n_drawn) = (0, 0);
     for seed in 0..n_scenes {
         let mut rng = Rng(7000 + seed);
