@@ -134,7 +134,10 @@ fn previews_are_up_to_date() {
 fn every_picture_has_its_example() {
     let examples = names("examples", "rs");
     assert_eq!(names("plots", "svg"), examples);
-    assert_eq!(names("plots", "png"), examples);
+    // The screenshot of the viewer is taken in a browser.
+    let mut pictures = names("plots", "png");
+    pictures.retain(|name| name != "viewer");
+    assert_eq!(pictures, examples);
     let tests = include_str!("gallery.rs");
     assert!(examples.iter().all(|name| tests.contains(&format!("/examples/{name}.rs"))));
 }

@@ -260,7 +260,7 @@ fn formats_without_areas_refuse_them_and_others_have_them() {
         gcode::write(&plot, &profile, &mut out),
     ] {
         let message = result.unwrap_err().to_string();
-        assert!(message.contains("no filled areas; write svg, pdf or png"), "{message}");
+        assert!(message.contains("no filled areas; SVG, PDF and PNG hold both"), "{message}");
     }
     assert!(out.is_empty());
     pdf::write(&plot, &mut out).unwrap();

@@ -194,6 +194,13 @@ fn the_page_is_told_every_option_of_draw_but_those_of_files() {
             "color",
             "gcode-profile",
             "camera",
+            "turntable",
+            "views",
+            "each",
+            "list",
+            "shard",
+            "skip-existing",
+            "keep-going",
         ]
         .contains(&name);
         assert_eq!(names.contains(name), !is_of_files, "--{name}");
