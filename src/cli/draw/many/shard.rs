@@ -137,8 +137,9 @@ mod tests {
         assert!(array(["9", "1", "12", "8", "1"]).is_err());
         assert!(array(["3", "0", "8", "3", "4"]).is_err());
         assert!(array(["9", "1", "8", "8", "1"]).is_err());
-        let unset = array(["", "1", "8", "8", "1"]).unwrap_err();
+        let unset = array(["", "1", "8", "8", "1"]).expect_err("no task");
         assert!(unset.contains("SLURM_ARRAY_TASK_ID is not set"), "{unset}");
-        assert!(array(["x", "1", "8", "8", "1"]).unwrap_err().contains("no number"));
+        let odd = array(["x", "1", "8", "8", "1"]).expect_err("no task");
+        assert!(odd.contains("no number"), "{odd}");
     }
 }
