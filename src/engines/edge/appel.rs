@@ -92,7 +92,7 @@ const CHUNK: usize = 512;
 ///
 /// Expected cost: the triangles, once, for the indices; for each edge the cutting edges near its
 /// image and the triangles near it in space; and a few sight lines. Where hidden layers need not be
-/// counted, only what is not certainly hidden is looked at; see [`occlusion`](super::occlusion).
+/// counted, only what is not certainly hidden is looked at; see `occlusion`.
 pub fn solve(view: &ViewedScene, options: &VisibilityOptions) -> (Visibility, LineCounts) {
     let sides = Sides::new(view);
     let rounding = Rounding::new(view);

@@ -9,7 +9,7 @@
 //!
 //! The curved surface bulges over an edge as a circle does: circles, cylinders and spheres come out as
 //! such. PN triangles (Vlachos et al., *Curved PN Triangles*, 2001) have the same form with a factor of
-//! one instead of [`bulge`]'s, and miss a circle.
+//! one instead of `bulge`'s, and miss a circle.
 //!
 //! The refined mesh is a mesh like any other: all decisions are exact for its vertices.
 
