@@ -13,11 +13,12 @@
 //! [`Sheet`] into a file: SVG, PDF, DXF, PNG, HPGL or G-code. The program `hiddenline` does the same from
 //! the command line.
 //!
-//! Scenes come from files, or from arrays in memory; strokes can be taken as points:
+//! Scenes come from files, or from arrays in memory, and you can also get the strokes as points. The view
+//! is given by its azimuth and elevation in degrees:
 //!
 //! ```
 //! use hiddenline::{DrawOptions, HiddenLines, Paper, Scene, View};
-//! use glam::dvec3;
+//! use hiddenline::glam::dvec3;
 //!
 //! let corners = [dvec3(0., 0., 0.), dvec3(1., 0., 0.), dvec3(0., 1., 0.), dvec3(0., 0., 1.)];
 //! let scene = Scene::from_faces(&corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])?;
@@ -27,6 +28,20 @@
 //!     let mm = stroke.points.iter().map(|&p| page.page_from_image.transform_point2(p));
 //!     println!("{} {:?}", stroke.kind.name(), mm.collect::<Vec<_>>());
 //! }
+//! # Ok::<(), hiddenline::Error>(())
+//! ```
+//!
+//! Models are z up unless you say otherwise, and light makes tone, in hatch lines with exact shadows:
+//!
+//! ```
+//! use hiddenline::{DrawOptions, Ground, HatchOptions, Paper, Scene, UpAxis, View};
+//!
+//! let spot = Scene::builder().up_axis(UpAxis::Y).open("examples/models/spot.obj")?.build()?;
+//! let drawing = spot.draw(&View::from_angles(215.0, 25.0), &DrawOptions::default());
+//! let hatching = HatchOptions::default().ground(Ground::Lowest);
+//! # if false {
+//! drawing.hatched(hatching).on(Paper::A4)?.optimized().save("spot.svg")?;
+//! # }
 //! # Ok::<(), hiddenline::Error>(())
 //! ```
 //!
@@ -46,7 +61,7 @@
 //! # Ok::<(), hiddenline::Error>(())
 //! ```
 //!
-//! A [`Surface`] z = f(x, y) or in space is drawn in the same way, from a formula, a function, a file of
+//! A [`Surface`], either z = f(x, y) or parametric in space, is drawn in the same way, from a formula, a function, a file of
 //! heights, or points:
 //!
 //! ```
@@ -96,10 +111,10 @@
 //! `draw` runs the stages from a scene to strokes, and `draw::surface` those from a surface. The
 //! page is placed first: it needs only the `extent` of what is drawn, so lengths on paper are known
 //! before any line is chosen. `predicates` make every decision on the way. `engines::image` finds
-//! the face that each pixel shows; `shading::preview` shades it. `hatch` cuts the faces by families of planes
-//! and asks `engines::edge` twice about each segment: from the eye, and from the light. To read the code, take the modules
-//! in the order of `stages` in `src/lib.rs`: no module uses a later one, and no two files use each
-//! other in a circle. `cargo test --test it laws::layers` checks that.
+//! the face that each pixel shows; `shading::preview` shades it. `hatch` cuts the faces with families of
+//! planes and asks `engines::edge` twice about each segment: from the eye, and from the light. To read
+//! the code, take the modules in the order of `stages` in `src/lib.rs`: no module uses a later one, and
+//! no two files use each other in a circle. `cargo test --test it laws::layers` checks that.
 //!
 //! # What is exact
 //!

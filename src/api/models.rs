@@ -35,7 +35,7 @@ impl Scene {
     /// An index is out of range, a coordinate is not finite, or there are too many.
     ///
     /// ```
-    /// use glam::dvec3;
+    /// use hiddenline::glam::dvec3;
     ///
     /// let corners = [dvec3(0., 0., 0.), dvec3(1., 0., 0.), dvec3(0., 1., 0.), dvec3(0., 0., 1.)];
     /// let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];

@@ -90,7 +90,7 @@ pub struct HatchMaterial {
 ///
 /// ```
 /// use hiddenline::{Ground, HatchOptions, LightSource};
-/// use glam::dvec3;
+/// use hiddenline::glam::dvec3;
 ///
 /// let hatch = HatchOptions::default()
 ///     .light(LightSource::From(dvec3(-1.0, -2.0, 3.0)))

@@ -168,7 +168,7 @@ const ROBUST_WINDOW: std::ops::RangeInclusive<f64> = 1e-90..=1e90;
 /// ```
 ///
 /// ```
-/// use glam::dvec2;
+/// use hiddenline::glam::dvec2;
 /// use hiddenline::stages::predicates::{Sign, orient2d};
 /// let (a, b) = (dvec2(0.5, 0.5), dvec2(12.0, 12.0));
 /// assert_eq!(orient2d(a, b, dvec2(24.0, 24.0)), Sign::Zero);

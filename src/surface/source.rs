@@ -140,7 +140,7 @@ impl Surface {
     /// scale of x and y.
     ///
     /// ```
-    /// use glam::dvec3;
+    /// use hiddenline::glam::dvec3;
     /// use hiddenline::Surface;
     ///
     /// let turn = (0.0, std::f64::consts::TAU);
