@@ -119,7 +119,7 @@ pub fn chain(
 /// joined whatever their kind, and nothing is dropped.
 ///
 /// Pieces that are drawn only where they are outline are all there, since only the paper will tell.
-/// Where hidden lines are told apart by `qi`, pieces of different `qi` are not joined. The other options
+/// Where hidden lines of different `qi` are drawn differently, their pieces are not joined. The other options
 /// are those of [`chain`]; `exact` must be off.
 pub fn draft(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions) -> [Draft; 2] {
     let pieces = pieces(view, visibility, None, options);

@@ -20,88 +20,23 @@
 //! When both uses run the same way, the faces are wound inconsistently; the second face is then
 //! flipped for the comparison, so kinds do not depend on the winding.
 
+mod segments;
+mod selection;
+
 use crate::camera::{Camera, ImageError, ImagePoint};
 use crate::model::creases::CreaseAngle;
 use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
-use crate::predicates::{PiercePoint, Sight, Sign, exact};
+use crate::predicates::{Sight, Sign, exact};
 use crate::strokes::StrokeKind;
 use glam::DVec3;
 use rayon::prelude::*;
 
+pub use self::segments::ViewSegments;
+pub use self::selection::LineSelection;
+
 /// Faces that meet at more than this angle, in degrees, make a crease unless set otherwise.
 pub const DEFAULT_CREASE_DEG: f64 = 30.0;
-
-/// The outline's place among the bits of the kinds.
-const OUTLINE: u32 = 1 << 31;
-
-/// Which kinds of line are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LineSelection {
-    kinds: u32,
-}
-
-impl LineSelection {
-    /// No lines.
-    pub const NONE: Self = Self { kinds: 0 };
-
-    /// Adds a kind.
-    #[must_use]
-    pub const fn with(self, kind: StrokeKind) -> Self {
-        Self { kinds: self.kinds | 1 << kind as u32 }
-    }
-
-    /// Every edge of the mesh, but no other lines.
-    pub const fn all_edges() -> Self {
-        Self::NONE
-            .with(StrokeKind::Silhouette)
-            .with(StrokeKind::Crease)
-            .with(StrokeKind::Boundary)
-            .with(StrokeKind::Nonmanifold)
-            .with(StrokeKind::Mesh)
-    }
-
-    /// The kinds of both.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self { kinds: self.kinds | other.kinds }
-    }
-
-    /// Adds the outline: the parts of silhouette, boundary, and non-manifold edges that are seen
-    /// against the background only (see [`crate::engines::edge::outline`]).
-    #[must_use]
-    pub const fn with_outline(self) -> Self {
-        Self { kinds: self.kinds | OUTLINE }
-    }
-
-    /// Whether the outline is drawn.
-    pub const fn has_outline(self) -> bool {
-        self.kinds & OUTLINE != 0
-    }
-
-    /// Whether anything other than the outline is drawn.
-    pub const fn has_more_than_outline(self) -> bool {
-        self.kinds & !OUTLINE != 0
-    }
-
-    /// Whether a kind is drawn.
-    pub const fn contains(self, kind: StrokeKind) -> bool {
-        self.kinds & 1 << kind as u32 != 0
-    }
-}
-
-impl Default for LineSelection {
-    /// Silhouette, crease, boundary, non-manifold and intersection lines, and wires.
-    fn default() -> Self {
-        Self::NONE
-            .with(StrokeKind::Silhouette)
-            .with(StrokeKind::Crease)
-            .with(StrokeKind::Boundary)
-            .with(StrokeKind::Nonmanifold)
-            .with(StrokeKind::Intersection)
-            .with(StrokeKind::Wire)
-    }
-}
 
 /// An edge that is to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,88 +45,6 @@ pub struct SelectedLine {
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,
-}
-
-/// Points and segments that belong to a view, not to the scene: hatching, cuts by planes, contours of
-/// smooth surfaces.
-///
-/// The scene's points keep their numbers; further ones are exact points where an edge meets a face. A
-/// segment hides nothing. A face does not hide a segment in its own plane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ViewSegments {
-    /// The scene's points, then those of the view, rounded.
-    points: Vec<DVec3>,
-    /// All that are not vertices, exact.
-    constructed: Vec<PiercePoint>,
-    ends: Vec<[u32; 2]>,
-    kinds: Vec<StrokeKind>,
-    /// The first of the triangles that contain each segment, and the one after the last.
-    within: Vec<[u32; 2]>,
-}
-
-impl ViewSegments {
-    /// No segments yet, for views of `scene`. O(points).
-    pub fn new(scene: &Scene) -> Self {
-        Self {
-            points: scene.points().to_vec(),
-            constructed: scene.intersections().points().to_vec(),
-            ends: Vec::new(),
-            kinds: Vec::new(),
-            within: Vec::new(),
-        }
-    }
-
-    /// Adds points, which get the numbers that follow those there are. O(points), in parallel.
-    pub fn extend_points(&mut self, points: Vec<PiercePoint>) {
-        self.points.par_extend(points.par_iter().map(PiercePoint::rounded));
-        self.constructed.extend(points);
-    }
-
-    /// Number of points, those of the scene among them.
-    pub fn n_points(&self) -> usize {
-        self.points.len()
-    }
-
-    /// The points: those of the scene, then those of the view, rounded.
-    pub fn points(&self) -> &[DVec3] {
-        &self.points
-    }
-
-    /// Number of segments.
-    pub fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// Whether there are no segments.
-    pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
-    }
-
-    /// The ends of a segment, as numbers of points. Panics when there is no such segment.
-    pub fn ends(&self, segment: usize) -> [u32; 2] {
-        self.ends[segment]
-    }
-
-    /// Adds a point and returns its number.
-    pub fn push_point(&mut self, point: PiercePoint) -> u32 {
-        self.points.push(point.rounded());
-        self.constructed.push(point);
-        self.points.len() as u32 - 1
-    }
-
-    /// Adds a segment between two points. Panics when there is no such point.
-    pub fn push(&mut self, ends: [u32; 2], kind: StrokeKind) {
-        self.push_within(ends, kind, [0; 2]);
-    }
-
-    /// Adds a segment that lies in certain triangles of the scene, all of one face: from the first
-    /// number to the one before the last. These do not hide it. Panics when there is no such point.
-    pub fn push_within(&mut self, ends: [u32; 2], kind: StrokeKind, triangles: [u32; 2]) {
-        assert!(ends.iter().all(|&end| (end as usize) < self.points.len()), "no such point");
-        self.ends.push(ends);
-        self.kinds.push(kind);
-        self.within.push(triangles);
-    }
 }
 
 /// A scene as one camera sees it, with the edges that are to be drawn.

@@ -142,6 +142,8 @@ pub mod stages {
 
     pub mod extent;
 
+    pub mod disjoint_sets;
+
     pub mod links;
 
     pub mod model;
@@ -183,8 +185,8 @@ pub mod stages {
 }
 
 use stages::{
-    api, axes, camera, chain, classify, drafting, draw, engines, extent, hatch, links, model,
-    optimize, page, plot, predicates, read, shading, strokes, surface, timing, write,
+    api, axes, camera, chain, classify, disjoint_sets, drafting, draw, engines, extent, hatch,
+    links, model, optimize, page, plot, predicates, read, shading, strokes, surface, timing, write,
 };
 
 // Points and vectors, as this crate uses them.

@@ -16,7 +16,7 @@ const STEPS: u64 = 1000;
 const WITHOUT_SHARE: &str = "{spinner} {msg} {elapsed}";
 const WITH_SHARE: &str = "{spinner} {msg} {bar:30} {percent}% {elapsed}, {eta} left";
 
-/// Is told the stage, and which share of it is done where that is known.
+/// Called with the stage, and the share of it that is done where that is known.
 pub(super) type Listener = Box<dyn Fn(&'static str, Option<f64>)>;
 
 /// Shown until it is dropped.
@@ -24,7 +24,7 @@ pub(super) struct Progress {
     bar: ProgressBar,
     waiting: Option<(Sender<()>, JoinHandle<()>)>,
     stage: Cell<&'static str>,
-    /// Who is told instead of the terminal.
+    /// Gets stages and shares done in place of the terminal.
     listener: Option<Listener>,
 }
 

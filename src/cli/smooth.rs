@@ -23,6 +23,9 @@ const DEFAULT_TOLERANCE_MM: f64 = 0.05;
 /// The same in widths of the pen.
 const DEFAULT_TOLERANCE: f64 = 0.25;
 
+/// Refinement does not grow finer nearer to the eye than this share of the distance to the target.
+const NEAREST_SHARE: f64 = 0.01;
+
 #[derive(Args)]
 #[command(next_help_heading = "Model")]
 pub(super) struct SmoothArgs {
@@ -65,7 +68,7 @@ impl SmoothArgs {
 }
 
 impl Smoothing {
-    /// Refines a mesh as `camera` sees it; what was done is told in the notes.
+    /// Refines a mesh as `camera` sees it, and notes what was done.
     pub(super) fn refine(
         &self,
         mesh: Mesh,
@@ -112,6 +115,6 @@ impl Smoothing {
         // Near the eye a unit has no end of millimeters; what is that near is seldom on the page.
         let typical = camera.forward().length();
         let nearest = depths.filter(|&depth| depth > least).fold(typical, f64::min);
-        Ok(scale / nearest.max(1e-2 * typical))
+        Ok(scale / nearest.max(NEAREST_SHARE * typical))
     }
 }

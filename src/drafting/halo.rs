@@ -32,7 +32,7 @@ pub(super) fn cut(draft: &Draft, paper: &Paper, halo: f64, is_perspective: bool)
     let search = Search {
         draft,
         ends: Ends::new(draft),
-        grid: paper.grid(draft),
+        grid: paper.grid(draft, paper.pen),
         reach: paper.pen,
         halo,
         is_perspective,

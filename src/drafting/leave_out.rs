@@ -15,7 +15,7 @@ use crate::strokes::draft::{Draft, Mark};
 
 use super::Paper;
 use super::edits::{Ends, between};
-use super::near::{Parts, SegmentGrid, are_parallel, part_within};
+use super::near::{Parts, ROUNDING, SegmentGrid, are_parallel, part_within};
 
 /// Stretches of one kind shorter than this, in millimeters, go with what is before them.
 const SHORTEST_RUN_MM: f64 = 1.0;
@@ -150,7 +150,7 @@ fn kept_pieces(
     rule: &Rule,
 ) -> Vec<(f64, f64)> {
     let (start, end) = (ends.along(unit.first), ends.along(unit.end));
-    let is_whole = |(from, to): (f64, f64)| to - from >= unit.length * (1.0 - 1e-9);
+    let is_whole = |(from, to): (f64, f64)| to - from >= unit.length * (1.0 - ROUNDING);
     let is_gap = |&(from, to): &(f64, f64)| {
         (to - from >= rule.shortest_gap || is_whole((from, to)))
             && crowded.iter().any(|part| part.0 <= to && part.1 >= from)
@@ -183,7 +183,7 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(draft: &'a Draft, paper: &Paper, rule: &'a Rule) -> Self {
-        Self { draft, ends: Ends::new(draft), grid: paper.grid(draft), rule }
+        Self { draft, ends: Ends::new(draft), grid: paper.grid(draft, rule.near), rule }
     }
 
     fn segments(&self) -> Vec<u32> {

@@ -35,8 +35,9 @@ use self::tidy::{rejoin, tidy};
 /// In drawings of grown models, figures smaller than this are specks, in millimeters.
 const FIGURE_MM: f64 = 3.0;
 
-/// Ink is sorted into cells at least this large.
-const CELL_MM: f64 = 1.5;
+/// Ink is sorted into cells at least this many times as large as the reach of a search: several cells
+/// are looked at, none of which holds much else.
+const CELL_REACHES: f64 = 1.0;
 
 /// Ink lies on other ink when their directions differ by no more than this, in degrees.
 const OVERLAP_TURN_DEG: f64 = 10.0;
@@ -90,7 +91,7 @@ pub struct DraftingOptions {
     pub pen_width_mm: f64,
     /// Visible strokes whose extent is below this are left out, in millimeters.
     pub shortest_stroke_mm: f64,
-    /// Whether the outline is told from other lines.
+    /// Whether outline is kept apart from other lines.
     pub outline: bool,
     /// Ink this close to other ink, and in its direction, is drawn once, in millimeters; `None` keeps
     /// it.
@@ -257,7 +258,8 @@ impl Paper {
         }
     }
 
-    fn grid(&self, draft: &Draft) -> SegmentGrid {
-        SegmentGrid::new(draft, self.bounds, (CELL_MM * self.mm).max(self.pen))
+    /// For searches within `reach` of a segment.
+    fn grid(&self, draft: &Draft, reach: f64) -> SegmentGrid {
+        SegmentGrid::new(draft, self.bounds, CELL_REACHES * reach)
     }
 }

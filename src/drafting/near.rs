@@ -9,8 +9,17 @@ use crate::strokes::draft::Draft;
 const ENTRIES_PER_SEGMENT: f64 = 6.0;
 const SPARE_ENTRIES: f64 = (1 << 16) as f64;
 
-/// Most cells of a grid.
+/// Most cells of a grid, and most for each segment, with some more for few segments.
 const MAX_CELLS: f64 = (1 << 22) as f64;
+const CELLS_PER_SEGMENT: f64 = 4.0;
+
+/// Parts of a stretch that are this close to its ends, or to each other, as fractions of its length, meet
+/// there: they were computed with rounding.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// By how much more than asked cells are searched, as a fraction of a cell: far more than the rounding of
+/// the way to a cell. It costs time only.
+const CELL_SLACK: f64 = 1e-6;
 
 /// The segments of a draft by square cells. A segment goes by the number of its first point.
 pub(super) struct SegmentGrid {
@@ -47,10 +56,11 @@ impl SegmentGrid {
             n += 1.0;
         }
         let size = high - low;
+        let max_cells = (CELLS_PER_SEGMENT * n + SPARE_ENTRIES).min(MAX_CELLS);
         let cell = cell
             .max(ink / (ENTRIES_PER_SEGMENT * n + SPARE_ENTRIES))
-            .max((size.x * size.y / MAX_CELLS).sqrt())
-            .max(size.max_element() / MAX_CELLS)
+            .max((size.x * size.y / max_cells).sqrt())
+            .max(size.max_element() / max_cells)
             .max(f64::MIN_POSITIVE);
         let [columns, rows] = [size.x, size.y].map(|length| (length / cell) as usize + 1);
         let mut grid = Self {
@@ -103,8 +113,7 @@ impl SegmentGrid {
 
     /// Calls `visit` with the cells within `margin` of a segment, and some others.
     fn cells(&self, a: DVec2, b: DVec2, margin: f64, mut visit: impl FnMut(usize)) {
-        // Rounding of the way to a cell is far below this.
-        let margin = margin + 1e-6 * self.cell;
+        let margin = margin + CELL_SLACK * self.cell;
         let (bottom, top) = if a.y <= b.y { (a, b) } else { (b, a) };
         let row = |y: f64| (((y - self.window.low.y) / self.cell) as usize).min(self.rows - 1);
         let column =

@@ -53,7 +53,7 @@ struct Joint {
 /// Joins what can be joined; `None` when that is nothing. Each end is joined once.
 /// O(points near ends), in parallel.
 pub(super) fn stitch(draft: &Draft, paper: &Paper, tidied: &mut Tidied) -> Option<Draft> {
-    let grid = paper.grid(draft);
+    let grid = paper.grid(draft, paper.pen);
     let ends = Ends::new(draft);
     let mut joints: Vec<Joint> = (0..2 * draft.len() as u32)
         .into_par_iter()

@@ -14,13 +14,14 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::disjoint_sets::DisjointSets;
 use crate::strokes::StrokeKind;
 use crate::strokes::draft::{Draft, DraftPoint, extent, is_closed, length};
 
 use super::Paper;
 use super::background::LazyBackground;
 use super::edits::{Edits, Ends, Tidied};
-use super::near::{Parts, SegmentGrid, part_within};
+use super::near::{Parts, ROUNDING, SegmentGrid, part_within};
 use super::stitch::stitch;
 
 /// Most rounds of stitching: what was joined may be joined again.
@@ -91,7 +92,7 @@ pub(super) fn rejoin(
 
 /// Joins two ends within a pen's width of each other, whatever the turn, if no third one is there.
 fn corners(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
-    let grid = paper.grid(&draft);
+    let grid = paper.grid(&draft, paper.pen);
     let ends = Ends::new(&draft);
     let n_ends = 2 * draft.len() as u32;
     // The only other end near each, if there is one.
@@ -155,7 +156,7 @@ fn for_each_end_near(
 
 /// Leaves out short strokes all of which lies within a pen's width of longer ones.
 fn shadows(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
-    let grid = paper.grid(&draft);
+    let grid = paper.grid(&draft, paper.pen);
     let lengths: Vec<f64> = draft.iter().map(length).collect();
     let points = draft.points();
     let is_longer = |other: u32, stroke: usize| {
@@ -195,9 +196,6 @@ fn shadows(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
     if shadows.contains(&true) { edits.apply(&draft) } else { draft }
 }
 
-/// Parts of a segment that are this close to its ends, or to each other, meet there.
-const ROUNDING: f64 = 1e-9;
-
 /// Leaves out small isolated figures, and short strokes with a loose end. One pass: what a stroke hung
 /// on is not left out next.
 fn specks_and_spurs(
@@ -214,7 +212,7 @@ fn specks_and_spurs(
         return draft;
     }
     let background = background.map(|background| background.get());
-    let grid = paper.grid(&draft);
+    let grid = paper.grid(&draft, paper.pen);
     let ends = Ends::new(&draft);
     // Strokes near each end; they may repeat.
     let near: Vec<Vec<u32>> = (0..2 * draft.len() as u32)
@@ -236,9 +234,11 @@ fn specks_and_spurs(
             near
         })
         .collect();
-    let mut figures = Figures::new(draft.len());
+    let mut figures = DisjointSets::new(draft.len());
     for (end, near) in near.iter().enumerate() {
-        near.iter().for_each(|&other| figures.unite(end as u32 / 2, other));
+        for &other in near {
+            figures.unite(end as u32 / 2, other);
+        }
     }
     let first = |stroke: usize| draft.stroke(stroke)[0].at;
     let mut boxes: Vec<(DVec2, DVec2)> = (0..draft.len()).map(|s| (first(s), first(s))).collect();
@@ -312,30 +312,4 @@ fn without(
     }
     tidied.n_dropped += n_dropped;
     if n_dropped > 0 { edits.apply(&draft) } else { draft }
-}
-
-/// Strokes that hang together.
-struct Figures {
-    parents: Vec<u32>,
-}
-
-impl Figures {
-    fn new(n: usize) -> Self {
-        Self { parents: (0..n as u32).collect() }
-    }
-
-    fn of(&mut self, stroke: u32) -> u32 {
-        let mut root = stroke;
-        while self.parents[root as usize] != root {
-            let next = self.parents[self.parents[root as usize] as usize];
-            self.parents[root as usize] = next;
-            root = next;
-        }
-        root
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.of(a), self.of(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
 }

@@ -16,6 +16,8 @@
 
 use glam::DVec2;
 
+use crate::disjoint_sets::DisjointSets;
+
 use super::graph::{Graph, IncidentEdges, NONE, target};
 
 /// Strokes as runs of vertices; a closed one ends at its first vertex.
@@ -246,7 +248,7 @@ fn repairing(pairing: &Pairing<'_>, a: u32, c: u32) -> (f64, [(u32, u32); 2]) {
 /// Which trails have been spliced together.
 struct TrailSets {
     trail_of_edge: Vec<u32>,
-    parent: Vec<u32>,
+    sets: DisjointSets,
     /// Whether a set holds an open trail; valid at its root.
     open: Vec<bool>,
 }
@@ -267,17 +269,11 @@ impl TrailSets {
                 }
             }
         }
-        Self { trail_of_edge, parent: (0..open.len() as u32).collect(), open }
+        Self { trail_of_edge, sets: DisjointSets::new(open.len()), open }
     }
 
     fn root(&mut self, half_edge: u32) -> u32 {
-        let mut trail = self.trail_of_edge[half_edge as usize / 2];
-        while self.parent[trail as usize] != trail {
-            let above = self.parent[self.parent[trail as usize] as usize];
-            self.parent[trail as usize] = above;
-            trail = above;
-        }
-        trail
+        self.sets.of(self.trail_of_edge[half_edge as usize / 2])
     }
 
     /// Whether two half-edges are of different sets of which one is closed: two open trails that
@@ -288,8 +284,8 @@ impl TrailSets {
     }
 
     fn unite(&mut self, a: u32, c: u32) {
-        let (a, c) = (self.root(a), self.root(c));
-        self.open[a as usize] |= self.open[c as usize];
-        self.parent[c as usize] = a;
+        let [a, c] = [a, c].map(|half_edge| self.trail_of_edge[half_edge as usize / 2]);
+        let [kept, gone] = self.sets.unite(a, c);
+        self.open[kept as usize] |= self.open[gone as usize];
     }
 }

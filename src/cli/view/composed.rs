@@ -90,7 +90,7 @@ impl Composed {
         Ok(composed)
     }
 
-    /// The arguments after the program's name. Options that say what holds anyway are left out.
+    /// The arguments after the program's name. Options with their default values are left out.
     pub(super) fn arguments(&self, command: &Command) -> Vec<OsString> {
         let mut arguments: Vec<OsString> = vec![self.name.into()];
         for (number, subject) in self.subjects.iter().enumerate() {

@@ -23,7 +23,7 @@ pub(super) struct Control {
     /// What a value is called in `--help`.
     value_name: String,
     choices: Vec<Choice>,
-    /// What holds unless it is set.
+    /// The value in effect unless one is set.
     default: String,
 }
 

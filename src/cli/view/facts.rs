@@ -1,4 +1,4 @@
-//! What is told about a drawing besides its strokes: camera, page and pens.
+//! What the page shows of a drawing besides its strokes: camera, page and pens.
 
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::page::{Page, PageOptions, PenRole, PenRule, Placement};

@@ -116,7 +116,7 @@ fn reads_stdin(matches: &ArgMatches) -> bool {
     models.into_iter().flatten().any(|model| model == "-")
 }
 
-/// Serves the page until it is told to end.
+/// Serves the page until a signal, or the end of the page, stops it.
 pub(super) fn run(job: Job) -> Result<(), Box<dyn Error>> {
     let Job { args, studio, revision } = job;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
@@ -129,10 +129,10 @@ pub(super) fn run(job: Job) -> Result<(), Box<dyn Error>> {
         pages: Arc::new(AtomicUsize::new(0)),
         left: Arc::new(Notify::new()),
     });
-    let (queue, told) = (shared.queue.clone(), events.clone());
+    let (queue, reports) = (shared.queue.clone(), events.clone());
     std::thread::Builder::new()
         .name("drawing".to_owned())
-        .spawn(move || worker::work(studio, &queue, &told))?;
+        .spawn(move || worker::work(studio, &queue, &reports))?;
     runtime.block_on(async {
         let listener = server::bind(args.port).await;
         let listener = listener.map_err(|error| cannot_serve(args.port, &error))?;

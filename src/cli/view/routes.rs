@@ -51,7 +51,7 @@ pub(super) struct Shared {
     pub(super) events: broadcast::Sender<Event>,
     /// Streams of events that are open: one for each page.
     pub(super) pages: Arc<AtomicUsize>,
-    /// Is told when the last page is closed.
+    /// Notified when the last page is closed.
     pub(super) left: Arc<tokio::sync::Notify>,
 }
 

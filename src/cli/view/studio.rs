@@ -29,9 +29,9 @@ use crate::cli::{Refused, config, draw, source, surface};
 const OF_MESH: [&str; 2] = ["unit", "exact"];
 /// The groups of options that say what is shown.
 const OF_SUBJECT: [&str; 2] = ["Model", "Surface"];
-/// Most warnings and hints that are told with a drawing, and characters of each.
-const MOST_TOLD: usize = 12;
-const LONGEST_TOLD: usize = 400;
+/// Most warnings and hints sent with a drawing, and characters of each.
+const MOST_NOTES: usize = 12;
+const LONGEST_NOTE: usize = 400;
 
 /// What the server shows.
 pub(super) struct Studio {
@@ -186,9 +186,9 @@ impl Studio {
         let placed = Placed { camera: sheet.camera, page: sheet.options, sheet: sheet.page };
         let work = stats.plot.map(|plot| plot.after).unwrap_or_default();
         let mut facts = facts(asked.seq, &placed, &pens_of(&plot));
-        let told = |texts: &[String]| -> Vec<String> {
-            let short = |text: &String| text.chars().take(LONGEST_TOLD).collect();
-            texts.iter().take(MOST_TOLD).map(short).collect()
+        let shortened = |texts: &[String]| -> Vec<String> {
+            let short = |text: &String| text.chars().take(LONGEST_NOTE).collect();
+            texts.iter().take(MOST_NOTES).map(short).collect()
         };
         let more = json!({
             "exact": true,
@@ -199,8 +199,8 @@ impl Studio {
             "lifts": work.lifts,
             "minutes": work.minutes,
             "seconds": stats.seconds.sum(),
-            "warnings": told(&notes.warnings),
-            "hints": told(&notes.hints),
+            "warnings": shortened(&notes.warnings),
+            "hints": shortened(&notes.hints),
             "summary": notes.summary,
         });
         extend(&mut facts, more);

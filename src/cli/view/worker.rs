@@ -25,7 +25,7 @@ use super::studio::{Answer, Asked, Studio};
 
 /// Most requests that wait. There are not more connections.
 const MOST_WAITING: usize = 64;
-/// Progress is told no more often.
+/// Progress is reported no more often.
 const PROGRESS: Duration = Duration::from_millis(100);
 
 /// What is to be done.
@@ -157,8 +157,8 @@ pub(super) fn work(mut studio: Studio, queue: &Queue, events: &broadcast::Sender
         if let Ok(outcome) = done {
             let _ = answer.send(outcome);
         }
-        // Otherwise the request was given up, or there is a bug: whoever waits is told that the answer
-        // was lost. What was being drawn is read again.
+        // Otherwise the request was given up, or there is a bug: whoever waits gets an answer that
+        // says so. What was being drawn is read again.
     }
 }
 
@@ -171,13 +171,13 @@ fn outcome(
 ) -> Outcome {
     let listener = || {
         let (wanted, events, page) = (wanted.clone(), events.clone(), page.to_owned());
-        let told = Cell::new(Instant::now());
+        let reported = Cell::new(Instant::now());
         Box::new(move |stage: &'static str, share: Option<f64>| {
             if !wanted.load(Ordering::Acquire) {
                 resume_unwind(Box::new(GivenUp));
             }
-            if told.get().elapsed() > PROGRESS {
-                told.set(Instant::now());
+            if reported.get().elapsed() > PROGRESS {
+                reported.set(Instant::now());
                 let event = json!({ "event": "progress", "stage": stage, "share": share });
                 let _ = events.send(Event { page: Some(page.clone()), line: event.to_string() });
             }

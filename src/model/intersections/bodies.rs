@@ -7,7 +7,7 @@
 //! perception of three-dimensional solids", 1963), and no more: bodies may cross, touch and contain
 //! each other, since each is judged by itself.
 
-use super::lines::root;
+use crate::disjoint_sets::DisjointSets;
 use crate::model::mesh::Mesh;
 use crate::model::topology::Topology;
 use crate::predicates::Solid;
@@ -34,7 +34,7 @@ impl Surfaces {
             of_triangles = Topology::of_triangles(triangles, mesh.positions().len());
             &of_triangles
         };
-        let mut surface_of: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut surfaces = DisjointSets::new(triangles.len());
         let mut open = Vec::new();
         for side in 0..sides.edges().len() as u32 {
             let uses = sides.uses(side);
@@ -46,22 +46,17 @@ impl Surfaces {
                 open.extend([a.face(), b.face()]);
                 continue;
             }
-            let [a, b] = [a, b].map(|used| root(&mut surface_of, used.face()));
-            surface_of[a.max(b) as usize] = a.min(b);
+            surfaces.unite(a.face(), b.face());
         }
         let mut is_open = vec![false; triangles.len()];
         for triangle in open {
-            is_open[root(&mut surface_of, triangle) as usize] = true;
+            is_open[surfaces.of(triangle) as usize] = true;
         }
-        for triangle in 0..triangles.len() as u32 {
-            root(&mut surface_of, triangle);
-        }
-        for surface in &mut surface_of {
-            if is_open[*surface as usize] {
-                *surface = NONE;
-            }
-        }
-        Self { surface_of }
+        let surface_of = (0..triangles.len() as u32).map(|triangle| {
+            let surface = surfaces.of(triangle);
+            if is_open[surface as usize] { NONE } else { surface }
+        });
+        Self { surface_of: surface_of.collect() }
     }
 
     /// The closed surface that two triangles are both part of.

@@ -13,6 +13,7 @@
 use super::pair::{End, Piece, Site};
 use super::tree::BoxTree;
 use super::{Intersection, Intersections};
+use crate::disjoint_sets::root;
 use crate::model::topology::Topology;
 use crate::predicates::{PiercePoint, Sign, Solid};
 use rayon::prelude::*;
@@ -111,22 +112,9 @@ fn planes(pieces: &[Piece], solid: &Solid, triangles: &[[u32; 3]]) -> Vec<u32> {
         plane_of[b as usize] = a;
     }
     for &triangle in &meeting {
-        root(&mut plane_of, triangle);
+        plane_of[triangle as usize] = root(&mut plane_of, triangle);
     }
     plane_of
-}
-
-/// The root of a triangle's set in a forest of disjoint sets; compresses the path to it.
-pub(super) fn root(parents: &mut [u32], triangle: u32) -> u32 {
-    let mut last = triangle;
-    while parents[last as usize] != last {
-        last = parents[last as usize];
-    }
-    let mut next = triangle;
-    while next != last {
-        next = std::mem::replace(&mut parents[next as usize], last);
-    }
-    last
 }
 
 /// All ends in order, each once, and their points.

@@ -10,6 +10,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::disjoint_sets::DisjointSets;
 use crate::model::creases::CreaseAngle;
 use crate::model::mesh::Mesh;
 use crate::model::topology::Topology;
@@ -50,8 +51,8 @@ impl Corners {
             SmoothParts::ByNormals => None,
         };
         // What joins corners into fans, and triangles into flat regions.
-        let mut fans = Union::new(3 * triangles.len());
-        let mut flats = Union::new(triangles.len());
+        let mut fans = DisjointSets::new(3 * triangles.len());
+        let mut flats = DisjointSets::new(triangles.len());
         let mut hard = vec![[true; 3]; triangles.len()];
         for edge in 0..topology.edges().len() as u32 {
             let &[first, second] = topology.uses(edge) else { continue };
@@ -202,30 +203,4 @@ pub(super) fn side(triangle: [u32; 3], [a, b]: [u32; 2]) -> usize {
         (p, q) == (a, b) || (p, q) == (b, a)
     };
     (0..3).find(is_side).unwrap_or(0)
-}
-
-/// Things that belong together.
-struct Union {
-    parents: Vec<u32>,
-}
-
-impl Union {
-    fn new(n: usize) -> Self {
-        Self { parents: (0..n as u32).collect() }
-    }
-
-    fn of(&mut self, one: u32) -> u32 {
-        let mut root = one;
-        while self.parents[root as usize] != root {
-            let next = self.parents[self.parents[root as usize] as usize];
-            self.parents[root as usize] = next;
-            root = next;
-        }
-        root
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.of(a), self.of(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
 }

@@ -1,4 +1,4 @@
-//! Smooth surfaces: a mesh refined until its facets cannot be told from the curved surface on paper.
+//! Smooth surfaces: a mesh refined until its facets look like the curved surface on paper.
 //!
 //! ```text
 //!        ╲      ╱             An edge between faces of one smooth part is split where its middle is

@@ -4,8 +4,8 @@
 //!   ┌──────┬──────┐       Whatever lies behind a covered cell (▓), as seen from the eye, is hidden
 //!   │▓▓▓▓▓▓│▓▓▓▓▓▓│       there: W. R. Franklin, "A linear time exact hidden surface algorithm",
 //!   │▓▓▓▓▓▓│▓▓▓▓▓▓│       SIGGRAPH 1980. A cell is covered by a single triangle, or by several that
-//!   ├──────┴──╲───┤       meet edge to edge all over it. This is area coherence: what holds at one
-//!   │▓▓▓▓▓▓▓▓▓▓╲▓▓│       point of a cell holds in all of it.
+//!   ├──────┴──╲───┤       meet edge to edge all over it. This is area coherence: what is true at one
+//!   │▓▓▓▓▓▓▓▓▓▓╲▓▓│       point of a cell is true in all of it.
 //!   └───────────╲─┘
 //! ```
 //!

@@ -12,6 +12,7 @@
 
 use super::build::{Link, in_painting_order};
 use super::{Forest, NONE};
+use crate::disjoint_sets::DisjointSets;
 use crate::engines::face::FragmentCounts;
 use crate::engines::face::fragment::{Fragment, Position, bounds};
 use crate::model::scene::Scene;
@@ -35,18 +36,17 @@ pub(super) struct Object {
 
 /// The objects of a scene in the order of their first triangles: faces that share a vertex are connected.
 pub(super) fn all(scene: &Scene, planes: &Planes) -> Vec<Object> {
-    let mut above: Vec<u32> = (0..scene.mesh().positions().len() as u32).collect();
+    let n_vertices = scene.mesh().positions().len();
+    let mut connected = DisjointSets::new(n_vertices);
     for &[a, b, c] in scene.triangles() {
-        for other in [b, c] {
-            let [one, other] = [a, other].map(|vertex| root(&mut above, vertex));
-            above[one.max(other) as usize] = one.min(other);
-        }
+        connected.unite(a, b);
+        connected.unite(a, c);
     }
-    let mut number_of = vec![NONE; above.len()];
+    let mut number_of = vec![NONE; n_vertices];
     let mut sets: Vec<Vec<Fragment>> = Vec::new();
     for fragment in Fragment::all(scene, planes) {
         let [vertex, ..] = scene.triangles()[fragment.triangle() as usize];
-        let number = &mut number_of[root(&mut above, vertex) as usize];
+        let number = &mut number_of[connected.of(vertex) as usize];
         if *number == NONE {
             *number = sets.len() as u32;
             sets.push(Vec::new());
@@ -54,15 +54,6 @@ pub(super) fn all(scene: &Scene, planes: &Planes) -> Vec<Object> {
         sets[*number as usize].push(fragment);
     }
     sets.into_iter().map(Object::new).collect()
-}
-
-/// The representative of a vertex's set; paths are halved on the way.
-fn root(above: &mut [u32], mut vertex: u32) -> u32 {
-    while above[vertex as usize] != vertex {
-        above[vertex as usize] = above[above[vertex as usize] as usize];
-        vertex = above[vertex as usize];
-    }
-    vertex
 }
 
 impl Object {
