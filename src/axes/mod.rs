@@ -10,7 +10,9 @@
 
 mod axis;
 mod font;
+mod glyphs;
 mod letters;
+mod script;
 mod ticks;
 
 pub use font::{missing, text};

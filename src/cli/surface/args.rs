@@ -124,7 +124,7 @@ struct DressingArgs {
     /// Title above the drawing
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     title: Option<String>,
-    /// Titles of the axes
+    /// Titles of the axes; `s^{-1}` raises and `x_{0}` lowers letters
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_value = "x,y,z")]
     axis_titles: Vec<String>,
 }
