@@ -19,11 +19,18 @@
 //! result of `%` and `mod` has the sign of the divisor. Both branches of a condition may be evaluated,
 //! but only the selected value is used. For names see [`FUNCTIONS`] and [`CONSTANTS`].
 
+mod function;
+mod interval;
+mod jet;
+mod jet_graph;
 mod lexer;
 mod parameter;
 mod parser;
 mod tape;
 
+pub use interval::Interval;
+pub use jet::{Class, Jet};
+pub use jet_graph::{Axis, JetGraph, JetLine};
 pub use parameter::{Parameter, ParameterError};
 pub use tape::{CONSTANTS, FUNCTIONS};
 
@@ -186,6 +193,11 @@ impl Formula {
         let mut out = [0.0];
         self.values(&[a], &[b], &mut out);
         out[0]
+    }
+
+    /// The formula ready to be enclosed over boxes. O(operations).
+    pub fn jets(&self) -> JetGraph {
+        JetGraph::new(&self.tape)
     }
 
     /// The values at many pairs, as many as the shortest of the three slices holds.

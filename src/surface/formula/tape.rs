@@ -1,5 +1,9 @@
 //! The postfix tape: operations on a stack whose entries are blocks of samples.
 
+use std::mem::{Discriminant, discriminant};
+
+use super::function::Function;
+
 /// How many samples are evaluated together, to amortize the dispatch of operations.
 const BLOCK: usize = 64;
 
@@ -50,7 +54,7 @@ impl Takes {
 }
 
 /// One operation of the tape.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Op {
     Constant(f64),
     First,
@@ -78,57 +82,80 @@ pub(super) enum Op {
     Clamp,
     Min,
     Max,
-    Unary(fn(f64) -> f64),
-    Binary(fn(f64, f64) -> f64),
+    /// The angle of the point with the second argument as x and the first as y.
+    Arctangent,
+    Hypotenuse,
+    Unary(Function),
+}
+
+impl Op {
+    /// Equal for equal operations, the bits of constants included.
+    pub(super) fn key(self) -> (Discriminant<Self>, u64) {
+        let detail = match self {
+            Self::Constant(value) => value.to_bits(),
+            Self::Unary(function) => function as u64,
+            _ => 0,
+        };
+        (discriminant(&self), detail)
+    }
+
+    /// How many operands it takes from the stack.
+    pub(super) fn n_operands(self) -> usize {
+        use Op::*;
+        match self {
+            Constant(_) | First | Second | Radius | Angle => 0,
+            Negate | Not | Square | Unary(_) => 1,
+            Select | Clamp => 3,
+            _ => 2,
+        }
+    }
 }
 
 /// A function's name, the number of arguments it takes, and its operation.
 pub(super) fn function(name: &str) -> Option<(&'static str, Takes, Op)> {
     let name = FUNCTIONS.iter().find(|known| **known == name)?;
-    let unary = |f| (Takes::One, Op::Unary(f));
-    let binary = |f| (Takes::Two, Op::Binary(f));
+    let unary = |function| (Takes::One, Op::Unary(function));
     let (takes, op) = match *name {
-        "sin" => unary(libm::sin),
-        "cos" => unary(libm::cos),
-        "tan" => unary(libm::tan),
-        "asin" => unary(libm::asin),
-        "acos" => unary(libm::acos),
-        "atan" => unary(libm::atan),
-        "atan2" => binary(libm::atan2),
-        "sinh" => unary(libm::sinh),
-        "cosh" => unary(libm::cosh),
-        "tanh" => unary(libm::tanh),
-        "asinh" => unary(libm::asinh),
-        "acosh" => unary(libm::acosh),
-        "atanh" => unary(libm::atanh),
-        // IEEE 754 requires correctly rounded square roots, so the result is the same everywhere.
-        "sqrt" => unary(f64::sqrt),
-        "cbrt" => unary(libm::cbrt),
-        "exp" => unary(libm::exp),
-        "ln" | "log" => unary(libm::log),
-        "log2" => unary(libm::log2),
-        "log10" => unary(libm::log10),
+        "sin" => unary(Function::Sin),
+        "cos" => unary(Function::Cos),
+        "tan" => unary(Function::Tan),
+        "asin" => unary(Function::Asin),
+        "acos" => unary(Function::Acos),
+        "atan" => unary(Function::Atan),
+        "atan2" => (Takes::Two, Op::Arctangent),
+        "sinh" => unary(Function::Sinh),
+        "cosh" => unary(Function::Cosh),
+        "tanh" => unary(Function::Tanh),
+        "asinh" => unary(Function::Asinh),
+        "acosh" => unary(Function::Acosh),
+        "atanh" => unary(Function::Atanh),
+        "sqrt" => unary(Function::Sqrt),
+        "cbrt" => unary(Function::Cbrt),
+        "exp" => unary(Function::Exp),
+        "ln" | "log" => unary(Function::Ln),
+        "log2" => unary(Function::Log2),
+        "log10" => unary(Function::Log10),
         "pow" => (Takes::Two, Op::Power),
-        "abs" => unary(f64::abs),
-        "sign" => unary(|t| if t == 0.0 { 0.0 } else { t.signum() }),
-        "floor" => unary(libm::floor),
-        "ceil" => unary(libm::ceil),
-        "round" => unary(libm::round),
-        "trunc" => unary(libm::trunc),
-        "fract" => unary(|t| t - libm::floor(t)),
+        "abs" => unary(Function::Abs),
+        "sign" => unary(Function::Sign),
+        "floor" => unary(Function::Floor),
+        "ceil" => unary(Function::Ceil),
+        "round" => unary(Function::Round),
+        "trunc" => unary(Function::Trunc),
+        "fract" => unary(Function::Fract),
         "mod" => (Takes::Two, Op::Modulo),
         "min" => (Takes::TwoOrMore, Op::Min),
         "max" => (Takes::TwoOrMore, Op::Max),
         "clamp" => (Takes::Three, Op::Clamp),
-        "hypot" => binary(libm::hypot),
+        "hypot" => (Takes::Two, Op::Hypotenuse),
         "if" => (Takes::Three, Op::Select),
-        "sinc" => unary(|t| if t == 0.0 { 1.0 } else { libm::sin(t) / t }),
-        "erf" => unary(libm::erf),
-        "gamma" => unary(libm::tgamma),
-        "j0" => unary(libm::j0),
-        "j1" => unary(libm::j1),
-        "y0" => unary(libm::y0),
-        _ => unary(libm::y1),
+        "sinc" => unary(Function::Sinc),
+        "erf" => unary(Function::Erf),
+        "gamma" => unary(Function::Gamma),
+        "j0" => unary(Function::J0),
+        "j1" => unary(Function::J1),
+        "y0" => unary(Function::Y0),
+        _ => unary(Function::Y1),
     };
     Some((name, takes, op))
 }
@@ -143,9 +170,8 @@ pub(super) struct Tape {
 }
 
 impl PartialEq for Tape {
-    /// Compares debug output, since function pointers have no reliable equality. Good enough for tests.
     fn eq(&self, other: &Self) -> bool {
-        format!("{:?}", self.ops) == format!("{:?}", other.ops)
+        self.ops.iter().map(|op| op.key()).eq(other.ops.iter().map(|op| op.key()))
     }
 }
 
@@ -161,15 +187,14 @@ impl Tape {
             self.height -= 1;
             return;
         }
-        let taken = match op {
-            Constant(_) | First | Second | Radius | Angle => 0,
-            Negate | Not | Square | Unary(_) => 1,
-            Select | Clamp => 3,
-            _ => 2,
-        };
-        self.height = self.height + 1 - taken;
+        self.height = self.height + 1 - op.n_operands();
         self.depth = self.depth.max(self.height);
         self.ops.push(op);
+    }
+
+    /// The operations in the order in which they are carried out.
+    pub(super) fn ops(&self) -> &[Op] {
+        &self.ops
     }
 
     /// Evaluates the tape at each pair of variables.
@@ -198,7 +223,7 @@ impl Tape {
                 Negate => unary(stack, top, n, |s| -s),
                 Not => unary(stack, top, n, |s| truth(!holds(s))),
                 Square => unary(stack, top, n, |s| s * s),
-                Unary(f) => unary(stack, top, n, f),
+                Unary(function) => unary(stack, top, n, function.evaluator()),
                 Add => binary(stack, &mut top, n, |s, t| s + t),
                 Subtract => binary(stack, &mut top, n, |s, t| s - t),
                 Multiply => binary(stack, &mut top, n, |s, t| s * t),
@@ -215,7 +240,8 @@ impl Tape {
                 Or => binary(stack, &mut top, n, |s, t| truth(holds(s) || holds(t))),
                 Min => binary(stack, &mut top, n, |s, t| extreme(s, t, s < t)),
                 Max => binary(stack, &mut top, n, |s, t| extreme(s, t, s > t)),
-                Binary(f) => binary(stack, &mut top, n, f),
+                Arctangent => binary(stack, &mut top, n, libm::atan2),
+                Hypotenuse => binary(stack, &mut top, n, libm::hypot),
                 Select => ternary(stack, &mut top, n, |c, s, t| if holds(c) { s } else { t }),
                 Clamp => ternary(stack, &mut top, n, |t, low, high| {
                     let raised = extreme(t, low, t > low);

@@ -8,6 +8,7 @@ mod equal_faces;
 pub(crate) mod export;
 mod folder;
 mod formula;
+mod formula_jets;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod hostile;
