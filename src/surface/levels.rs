@@ -5,8 +5,8 @@
 //!           ╱ ╲                    shared by the triangles on both sides of an edge, so that the
 //!   ───────●───●────── level       cut surface has no cracks, and stand at the level's very z.
 //!         ╱     ╲
-//!     lo ●───────● mid             x and y of a new vertex are rounded once: it lies within
-//!                                  4 ulps of its coordinates off the edge it cuts.
+//!     lo ●───────● mid             They lie where the function crosses the level, if it is known,
+//!                                  and else on the edge, x and y rounded once.
 //! ```
 //!
 //! The cut surface is the scene: what is visible of it, level curves included, is then decided
@@ -15,6 +15,8 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::crossings::{Crossing, places};
+use super::height_function::HeightFunction;
 use super::lined_mesh::{LinedMesh, SurfaceLine, sorted};
 use crate::strokes::StrokeKind;
 
@@ -37,15 +39,19 @@ impl LinedMesh {
     ///
     /// A level curve is the border of what is as high as the level or higher: an edge at the level
     /// is drawn where a face beside it lies below. A plateau is thus outlined once, along its lower
-    /// side. O(triangles + pieces).
+    /// side. On sheets with a function the curves run through points of the function.
+    /// O(triangles + pieces).
     pub fn add_levels(&mut self, levels: &[f64]) {
         let levels = sorted(levels);
+        self.cut_where_level(&levels);
+        let traced = self.traced_places(&levels);
         let mut cutter = Cutter {
             levels: &levels,
             n_original: self.positions.len() as u32,
             positions: std::mem::take(&mut self.positions),
             origins: Vec::new(),
             cuts: FxHashMap::default(),
+            traced,
         };
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut curves = Vec::new();
@@ -61,6 +67,162 @@ impl LinedMesh {
         }
         lines.extend(curves.into_iter().map(|ends| SurfaceLine { ends, kind: StrokeKind::Level }));
         (self.positions, self.triangles, self.lines) = (cutter.positions, triangles, lines);
+    }
+
+    /// The sheets that are traced on a function, each with its triangles.
+    fn traced_sheets(&self) -> impl Iterator<Item = (&HeightFunction, std::ops::Range<usize>)> {
+        let ends = self.sheets.iter().skip(1).map(|sheet| sheet.first_triangle);
+        let ends = ends.chain([self.triangles.len()]);
+        self.sheets
+            .iter()
+            .zip(ends)
+            .filter_map(|(sheet, end)| Some((sheet.function.as_ref()?, sheet.first_triangle..end)))
+    }
+
+    /// The lower and the upper end of an edge.
+    fn by_height(&self, [a, b]: [u32; 2]) -> [u32; 2] {
+        let z = |vertex: u32| self.positions[vertex as usize].z;
+        if (z(a), a) < (z(b), b) { [a, b] } else { [b, a] }
+    }
+
+    /// Where functions cross the levels on the edges of triangles.
+    fn traced_places(&self, levels: &[f64]) -> TracedPlaces {
+        let mut traced = TracedPlaces::default();
+        for (function, triangles) in self.traced_sheets() {
+            let mut crossings = Vec::new();
+            let first_place = traced.places.len();
+            for &[a, b, c] in &self.triangles[triangles] {
+                for edge in [[a, b], [b, c], [c, a]].map(|ends| self.by_height(ends)) {
+                    let [low, high] = edge.map(|vertex| self.positions[vertex as usize]);
+                    let crossed = between(levels, low.z, high.z);
+                    if crossed.is_empty() || traced.first.contains_key(&edge) {
+                        continue;
+                    }
+                    let first = first_place + crossings.len();
+                    traced.first.insert(edge, (first, crossed.start));
+                    let of = |level: &f64| Crossing { low, high, level: *level };
+                    crossings.extend(levels[crossed].iter().map(of));
+                }
+            }
+            traced.places.extend(places(function, &crossings));
+        }
+        traced
+    }
+
+    /// Adds vertices on edges that end at a level, where the function is not what the ends say, and splits
+    /// triangles and lines there.
+    ///
+    /// ```text
+    ///      ╭──●───●    × where the function first reaches a plateau at the level
+    ///     ╱   ×
+    ///    ●
+    ///    ●──╮ ╭───●    × where it dips below the level between two ends at the level, or, if it
+    ///       ╰×╯          does not, where another level curve crosses the edge
+    /// ```
+    fn cut_where_level(&mut self, levels: &[f64]) {
+        let mut edges: FxHashMap<[u32; 2], Option<u32>> = FxHashMap::default();
+        let mut found: Vec<DVec3> = Vec::new();
+        for (function, triangles) in self.traced_sheets() {
+            for &[a, b, c] in &self.triangles[triangles] {
+                for edge in [[a, b], [b, c], [c, a]].map(|ends| self.by_height(ends)) {
+                    let [low, high] = edge.map(|vertex| self.positions[vertex as usize]);
+                    if !is_one_of(levels, high.z) {
+                        continue;
+                    }
+                    edges.entry(edge).or_insert_with(|| {
+                        found.push(if low.z < high.z {
+                            function.plateau_edge(low, high)?
+                        } else {
+                            // The function may well not be level between the ends.
+                            let dip = function.extreme(low, high, false);
+                            dip.or_else(|| function.crossing_of_level_edge(low, high))?
+                        });
+                        Some((self.positions.len() + found.len() - 1) as u32)
+                    });
+                }
+            }
+        }
+        if found.is_empty() {
+            return;
+        }
+        let n_before = self.positions.len() as u32;
+        let z = |vertex: u32| match vertex.checked_sub(n_before) {
+            Some(new) => found[new as usize].z,
+            None => self.positions[vertex as usize].z,
+        };
+        let middle = |mesh: &Self, ends: [u32; 2]| *edges.get(&mesh.by_height(ends))?;
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        let mut firsts = self.sheets.iter().map(|sheet| sheet.first_triangle).peekable();
+        let mut new_firsts = Vec::with_capacity(self.sheets.len());
+        for (k, &corners) in self.triangles.iter().enumerate() {
+            while firsts.next_if(|first| *first <= k).is_some() {
+                new_firsts.push(triangles.len());
+            }
+            let [a, b, c] = corners;
+            let middles = [[a, b], [b, c], [c, a]].map(|ends| middle(self, ends));
+            split_triangle(corners, middles, &z, &mut triangles);
+        }
+        new_firsts.resize(self.sheets.len(), triangles.len());
+        let mut lines = Vec::with_capacity(self.lines.len());
+        for line in &self.lines {
+            let [a, b] = line.ends;
+            match middle(self, line.ends) {
+                Some(m) => lines.extend([[a, m], [m, b]].map(|ends| SurfaceLine { ends, ..*line })),
+                None => lines.push(*line),
+            }
+        }
+        (self.triangles, self.lines) = (triangles, lines);
+        self.positions.extend(found);
+        for (sheet, first_triangle) in self.sheets.iter_mut().zip(new_firsts) {
+            sheet.first_triangle = first_triangle;
+        }
+    }
+}
+
+/// Whether a height is that of a level; −0 is 0.
+fn is_one_of(levels: &[f64], height: f64) -> bool {
+    levels.binary_search_by(|level| level.total_cmp(&(height + 0.0))).is_ok()
+}
+
+/// Splits a triangle at points on its sides: that between corners 0 and 1, 1 and 2, 2 and 0.
+fn split_triangle(
+    corners: [u32; 3],
+    middles: [Option<u32>; 3],
+    z: &impl Fn(u32) -> f64,
+    out: &mut Vec<[u32; 3]>,
+) {
+    let [a, b, c] = corners;
+    match middles {
+        [None, None, None] => out.push(corners),
+        [Some(m), None, None] => out.extend([[a, m, c], [m, b, c]]),
+        [Some(m), Some(n), None] => {
+            out.push([m, b, n]);
+            // A diagonal from a dip would part what is at the level on both sides of it.
+            if z(m).min(z(c)) >= z(a).min(z(n)) {
+                out.extend([[a, m, c], [m, n, c]]);
+            } else {
+                out.extend([[a, m, n], [a, n, c]]);
+            }
+        }
+        [Some(m), Some(n), Some(o)] => out.extend([[a, m, o], [m, b, n], [n, c, o], [m, n, o]]),
+        // The next corner first.
+        [first, second, third] => split_triangle([b, c, a], [second, third, first], z, out),
+    }
+}
+
+/// Places of crossings on functions.
+#[derive(Default)]
+struct TracedPlaces {
+    /// For an edge, by its lower and upper end, its first place and the number of its level.
+    first: FxHashMap<[u32; 2], (usize, usize)>,
+    /// Parts of the ways from the lower to the upper ends, in the order of levels on each edge.
+    places: Vec<f64>,
+}
+
+impl TracedPlaces {
+    fn place(&self, edge: [u32; 2], level: usize) -> Option<f64> {
+        let (first, first_level) = self.first.get(&edge)?;
+        Some(self.places[first + level - first_level])
     }
 }
 
@@ -78,6 +240,7 @@ struct Cutter<'a> {
     origins: Vec<[u32; 2]>,
     /// The new vertex on an edge, given by its lower and upper end, at a level, given by its number.
     cuts: FxHashMap<([u32; 2], u32), u32>,
+    traced: TracedPlaces,
 }
 
 impl Cutter<'_> {
@@ -99,8 +262,8 @@ impl Cutter<'_> {
         }
         let [a, b] = edge.map(|v| self.positions[v as usize]);
         let z = self.levels[level];
-        // Halves, since the difference of two finite heights may overflow.
-        let t = (z / 2.0 - a.z / 2.0) / (b.z / 2.0 - a.z / 2.0);
+        let straight = || Crossing { low: a, high: b, level: z }.straight();
+        let t = self.traced.place(edge, level).unwrap_or_else(straight);
         let vertex = self.positions.len() as u32;
         self.positions.push((a + t * (b - a)).with_z(z));
         self.origins.push(edge);
@@ -114,7 +277,7 @@ impl Cutter<'_> {
         let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
         // Half-open: a vertex at the level counts as above it, so that a plateau is outlined along
         // its lower side only, and a ridge at the level is one line.
-        if low < high && self.levels.binary_search_by(|l| l.total_cmp(&(high + 0.0))).is_ok() {
+        if low < high && is_one_of(self.levels, high) {
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 if self.z(a) == high && self.z(b) == high {

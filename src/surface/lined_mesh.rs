@@ -4,6 +4,8 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::Grid;
+use super::height_function::HeightFunction;
+use super::split_cells::{Center, Splitting};
 use crate::classify::SelectedLine;
 use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
 use crate::model::scene::Scene;
@@ -23,6 +25,15 @@ pub struct LinedMesh {
     pub(super) lines: Vec<SurfaceLine>,
     /// Levels, in rising order, at which the cells of lattices are split.
     pub(super) split_at: Vec<f64>,
+    pub(super) sheets: Vec<Sheet>,
+}
+
+/// What is added to a mesh from here on, until the next sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sheet {
+    pub(super) first_triangle: usize,
+    /// What it was sampled from, if level curves are traced on that.
+    pub(super) function: Option<HeightFunction>,
 }
 
 /// A line between two vertices.
@@ -56,19 +67,18 @@ pub struct LinedScene {
 
 impl LinedMesh {
     /// An empty mesh for level curves: cells of lattices that one of the `levels` meets are cut into
-    /// four triangles about a point of their bilinear patch, its saddle or else its middle.
-    ///
-    /// ```text
-    ///   − ────── +        Either diagonal alone would join two corners that are on one side of the
-    ///   │ ╲    ╱ │        level, although x·y = 0 is a cross. The level curves of the four triangles
-    ///   │   ●    │        meet in the saddle as those of the patch do.
-    ///   │ ╱    ╲ │
-    ///   + ────── −        Not with `LatticeLines::triangles`, which draws the two triangles.
-    /// ```
+    /// triangles about a point of their surface. Not with `LatticeLines::triangles`, which draws the two
+    /// triangles of a cell.
     ///
     /// The curves themselves are drawn by [`add_levels`](Self::add_levels).
     pub fn for_levels(levels: &[f64]) -> Self {
         Self { split_at: sorted(levels), ..Self::default() }
+    }
+
+    /// Begins a sheet: what is added from now on belongs to it. Level curves are traced on the function
+    /// that it was sampled from, if that is given.
+    pub fn begin_sheet(&mut self, function: Option<HeightFunction>) {
+        self.sheets.push(Sheet { first_triangle: self.triangles.len(), function });
     }
 
     /// Adds the triangles and lines of a grid; the cells around a hole are left out.
@@ -82,25 +92,58 @@ impl LinedMesh {
     pub fn push_lattice(&mut self, n_columns: usize, points: &[DVec3], lines: &LatticeLines) {
         // All edges of all triangles are to be those of the surface as it is drawn without levels.
         let levels = if lines.triangles { Vec::new() } else { self.split_at.clone() };
+        let function = self.sheets.last().and_then(|sheet| sheet.function.clone());
+        let splitting = Splitting { levels: &levels, function: function.as_ref() };
+        let extremes = splitting.extremes(n_columns, points);
         let base = self.positions.len();
         let n_rows = points.len() / n_columns.max(1);
         let is_hole = |k: usize| !points[k].is_finite();
         // Vertices that no triangle uses are dropped later; they only have to be finite until then.
         self.positions.extend(points.iter().map(|p| if p.is_finite() { *p } else { DVec3::ZERO }));
         let id = |k: usize| (base + k) as u32;
+        let mut sides: Vec<[usize; 2]> = extremes.keys().copied().collect();
+        sides.sort_unstable();
+        let between: FxHashMap<[usize; 2], u32> = sides
+            .iter()
+            .zip(self.positions.len() as u32..)
+            .map(|(side, vertex)| (*side, vertex))
+            .collect();
+        self.positions.extend(sides.iter().map(|side| extremes[side]));
+        let between = |a: usize, b: usize| between.get(&[a.min(b), a.max(b)]).copied();
+        let (mut ring, mut points_of_ring) = (Vec::new(), Vec::new());
         for j in 0..n_rows.saturating_sub(1) {
             for i in 0..n_columns - 1 {
                 let k = j * n_columns + i;
                 let (right, above) = (k + 1, k + n_columns);
                 let corners = [k, right, above + 1, above];
-                if let Some(center) = split_point(corners.map(|k| points[k]), &levels) {
-                    self.positions.push(center);
-                    let center = (self.positions.len() - 1) as u32;
-                    for side in 0..4 {
-                        let [a, b] = [corners[side], corners[(side + 1) % 4]].map(id);
-                        self.push_triangle([a, b, center], false);
+                ring.clear();
+                points_of_ring.clear();
+                for side in 0..4 {
+                    let (a, b) = (corners[side], corners[(side + 1) % 4]);
+                    ring.push(id(a));
+                    points_of_ring.push(points[a]);
+                    if let Some(vertex) = between(a, b) {
+                        ring.push(vertex);
+                        points_of_ring.push(self.positions[vertex as usize]);
                     }
-                    continue;
+                }
+                match splitting.center(corners.map(|k| points[k]), &points_of_ring) {
+                    Some(Center::Inside(center)) => {
+                        self.positions.push(center);
+                        let center = (self.positions.len() - 1) as u32;
+                        for (k, &a) in ring.iter().enumerate() {
+                            self.push_triangle([a, ring[(k + 1) % ring.len()], center], false);
+                        }
+                        continue;
+                    }
+                    Some(Center::OnRing(first)) => {
+                        ring.rotate_left(first);
+                        for pair in ring[1..].windows(2) {
+                            self.push_triangle([ring[0], pair[0], pair[1]], false);
+                        }
+                        continue;
+                    }
+                    None => {}
                 }
                 for corners in [[k, right, above + 1], [k, above + 1, above]] {
                     if !corners.into_iter().any(is_hole) {
@@ -112,8 +155,16 @@ impl LinedMesh {
         let every = lines.every.max(1);
         let chosen = |k: usize, n: usize| k.is_multiple_of(every) || k + 1 == n;
         let mut push = |a: usize, b: usize| {
-            if !is_hole(a) && !is_hole(b) {
-                self.lines.push(SurfaceLine { ends: [id(a), id(b)], kind: StrokeKind::Grid });
+            if is_hole(a) || is_hole(b) {
+                return;
+            }
+            let mut push = |ends| self.lines.push(SurfaceLine { ends, kind: StrokeKind::Grid });
+            match between(a, b) {
+                Some(middle) => {
+                    push([id(a), middle]);
+                    push([middle, id(b)]);
+                }
+                None => push([id(a), id(b)]),
             }
         };
         for k in 0..points.len() {
@@ -197,30 +248,6 @@ pub(super) fn sorted(levels: &[f64]) -> Vec<f64> {
     levels.sort_by(f64::total_cmp);
     levels.dedup();
     levels
-}
-
-/// The point about which a cell is split: that of the bilinear patch over its corners, given counter-
-/// clockwise, where it has its saddle if both ends of one diagonal are higher than both of the other,
-/// and in the middle otherwise. `None` if no level meets the cell or it has a hole.
-fn split_point([a, b, c, d]: [DVec3; 4], levels: &[f64]) -> Option<DVec3> {
-    if levels.is_empty() || ![a, b, c, d].iter().all(|p| p.is_finite()) {
-        return None;
-    }
-    let low = a.z.min(b.z).min(c.z).min(d.z);
-    let high = a.z.max(b.z).max(c.z).max(d.z);
-    let first_above = levels.partition_point(|level| *level <= low);
-    if levels.get(first_above).is_none_or(|level| *level > high) {
-        return None;
-    }
-    let is_saddle = a.z.min(c.z) > b.z.max(d.z) || a.z.max(c.z) < b.z.min(d.z);
-    let (u, v) = if is_saddle {
-        let twist = (a.z - b.z) + (c.z - d.z);
-        ((a.z - d.z) / twist, (a.z - b.z) / twist)
-    } else {
-        (0.5, 0.5)
-    };
-    let patch = (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v;
-    (patch.is_finite() && (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then_some(patch)
 }
 
 /// Makes border points of a lattice equal if they nearly coincide, within [`SEAM_TOLERANCE`].

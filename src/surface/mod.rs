@@ -3,8 +3,10 @@
 pub mod formula;
 
 mod cells;
+mod crossings;
 mod domain;
 mod grid;
+mod height_function;
 mod heights;
 mod lattice_extent;
 mod levels;
@@ -13,9 +15,11 @@ mod lined_mesh;
 mod points;
 mod sampled;
 mod source;
+mod split_cells;
 
 pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
+pub use height_function::HeightFunction;
 pub use heights::{HeightError, HeightField, HeightNote, HeightOptions, read_heights};
 pub use lattice_extent::lattice_extent;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};

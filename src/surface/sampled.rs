@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::domain::TrimmedGrid;
 use super::formula::Formula;
 use super::grid::{Grid, GridError, Holes, parameters};
+use super::height_function::HeightFunction;
 use super::lattice_extent::lattice_extent;
 use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
 use super::source::{Aspect, Source, Surface};
@@ -55,6 +56,8 @@ pub enum SamplingError {
 #[derive(Debug, Clone)]
 pub struct SampledSurface {
     sheets: Samples,
+    /// What the sheets were sampled from, if that is z = f(x, y).
+    formulas: Vec<Formula>,
     z_factor: f64,
 }
 
@@ -127,7 +130,11 @@ impl Surface {
             }
             Source::Parametric { formulas, u, v } => lattice(formulas, *u, *v, n)?,
         };
-        let mut surface = SampledSurface { sheets, z_factor: 1.0 };
+        let formulas = match &self.source {
+            Source::Formulas { formulas, .. } => formulas.clone(),
+            _ => Vec::new(),
+        };
+        let mut surface = SampledSurface { sheets, formulas, z_factor: 1.0 };
         let (low, high) = surface.bounds();
         if low.x > high.x {
             return Err(SamplingError::NoHeights { outside_domain: self.has_heights_outside() });
@@ -280,10 +287,24 @@ impl SampledSurface {
     /// if triangles are to have them.
     pub fn lined(&self, lines: &LatticeLines, levels: &[f64]) -> LinedMesh {
         let mut mesh = LinedMesh::for_levels(levels);
+        let is_traced = !levels.is_empty() && !lines.triangles;
+        let formulas = if is_traced { &self.formulas[..] } else { &[] };
+        let function = |sheet: usize| {
+            let formula = formulas.get(sheet)?;
+            Some(HeightFunction::new(formula.clone(), self.z_factor))
+        };
         match &self.sheets {
-            Samples::Grids(grids) => grids.iter().for_each(|grid| mesh.push_grid(grid, lines)),
+            Samples::Grids(grids) => {
+                for (sheet, grid) in grids.iter().enumerate() {
+                    mesh.begin_sheet(function(sheet));
+                    mesh.push_grid(grid, lines);
+                }
+            }
             Samples::Trimmed { grids, .. } => {
-                grids.iter().for_each(|grid| mesh.push_trimmed(grid, lines));
+                for (sheet, grid) in grids.iter().enumerate() {
+                    mesh.begin_sheet(function(sheet));
+                    mesh.push_trimmed(grid, lines);
+                }
             }
             Samples::Triangles { points, triangles } => {
                 mesh.push_triangles(points, triangles, lines.triangles);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::surface::formula::{Formula, Variables};
 use hiddenline::stages::surface::{
-    Grid, HeightOptions, LatticeLines, LinedMesh, TrimmedGrid, read_heights,
+    Grid, HeightFunction, HeightOptions, LatticeLines, LinedMesh, TrimmedGrid, read_heights,
 };
 
 const NO_LINES: LatticeLines =
@@ -13,7 +13,13 @@ const NO_LINES: LatticeLines =
 
 /// The ends of the pieces of the level curves in the plane.
 fn pieces(grid: &Grid, levels: &[f64]) -> Vec<[f64; 4]> {
+    traced(grid, None, levels)
+}
+
+/// The same, traced on the function that the grid was sampled from.
+fn traced(grid: &Grid, function: Option<HeightFunction>, levels: &[f64]) -> Vec<[f64; 4]> {
     let mut mesh = LinedMesh::for_levels(levels);
+    mesh.begin_sheet(function);
     mesh.push_grid(grid, &NO_LINES);
     mesh.add_levels(levels);
     let scene = mesh.into_scene().expect("a scene");
@@ -64,6 +70,72 @@ fn curves_of_saddles_and_kinks_have_their_lengths() {
     }
     let found = length(&pieces(&sampled("x^2 - y^2", 81), &[0.0]));
     assert!((found - 2.0 * 200f64.sqrt()).abs() < 1e-9, "{found}");
+}
+
+#[test]
+fn curves_of_functions_have_their_lengths_wherever_the_samples_are() {
+    let (pi, root2) = (std::f64::consts::PI, 2f64.sqrt());
+    for (text, level, expected, tolerance) in [
+        ("x*y", 0.0, 20.0, 1e-9),
+        ("x*y + 4", 4.0, 20.0, 1e-9),
+        ("(x - 0.3)*(y + 1.7)", 0.0, 20.0, 1e-9),
+        ("x^2 - y^2", 0.0, 20.0 * root2, 1e-9),
+        ("abs(x) - abs(y)", 0.0, 20.0 * root2, 1e-9),
+        ("(x - 0.3)^2 - (y + 0.7)^2", 0.0, 18.6 * root2, 1e-9),
+        ("min(x, 0)", 0.0, 10.0, 1e-9),
+        ("min(x - 0.3, 0)", 0.0, 10.0, 1e-9),
+        ("floor(x)", 1.0, 10.0, 1e-9),
+        // Circles are polygons.
+        ("x^2 + y^2", 9.0, 6.0 * pi, 4e-3),
+        ("min(r, 2)", 2.0, 4.0 * pi, 4e-3),
+    ] {
+        let formula = Formula::parse(text, Variables::Plane).expect("a formula");
+        for n in [(40, 40), (41, 41), (37, 64), (64, 37)] {
+            // A drawing scales heights.
+            let factor = if n.0 < n.1 { 0.16 } else { 1.0 };
+            let grid = Grid::sample(&formula, (-5.0, 5.0), (-5.0, 5.0), n);
+            let mut grid = grid.expect("a grid");
+            grid.scale_heights(factor);
+            let function = HeightFunction::new(formula.clone(), factor);
+            let found = length(&traced(&grid, Some(function), &[level * factor]));
+            assert!((found - expected).abs() < tolerance, "{text}, {n:?}: {found}");
+        }
+    }
+}
+
+#[test]
+fn curves_of_functions_run_through_points_of_them() {
+    let levels: Vec<f64> = (-9..=9).map(|k| f64::from(k) / 10.0).collect();
+    for text in ["sin(x)*cos(y)", "exp(-r^2/9)", "sin(3*x + y^2)", "min(sin(x), y/4)"] {
+        let formula = Formula::parse(text, Variables::Plane).expect("a formula");
+        let grid = Grid::sample(&formula, (-5.0, 4.0), (-3.0, 5.0), (33, 46)).expect("a grid");
+        let found = traced(&grid, Some(HeightFunction::new(formula.clone(), 1.0)), &levels);
+        assert!(found.len() > 300, "{text}: {}", found.len());
+        for [ax, ay, bx, by] in found {
+            for (x, y) in [(ax, ay), (bx, by)] {
+                let z = formula.value(x, y);
+                let off = levels.iter().map(|level| (level - z).abs()).fold(1.0, f64::min);
+                assert!(off < 1e-11, "{text} at {x}, {y}: {z}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_circle_through_samples_and_one_that_is_the_edge_of_a_plateau_are_round() {
+    for (text, radius) in [("x^2 + y^2", 5.0), ("min(hypot(x, y), 5)", 5.0)] {
+        let formula = Formula::parse(text, Variables::Plane).expect("a formula");
+        // (3, 4) and (5, 0) are samples.
+        let grid = Grid::sample(&formula, (-7.0, 7.0), (-7.0, 7.0), (29, 29)).expect("a grid");
+        let level = formula.value(5.0, 0.0);
+        let found = traced(&grid, Some(HeightFunction::new(formula, 1.0)), &[level]);
+        for [ax, ay, bx, by] in &found {
+            assert!((ax.hypot(*ay) - radius).abs() < 1e-9, "{text}: {ax}, {ay}");
+            assert!((bx.hypot(*by) - radius).abs() < 1e-9, "{text}: {bx}, {by}");
+        }
+        let around = 2.0 * std::f64::consts::PI * radius;
+        assert!((length(&found) - around).abs() < 0.05, "{text}: {}", length(&found));
+    }
 }
 
 #[test]
