@@ -110,7 +110,8 @@ impl HeightFunction {
         };
         let (mut low, mut high) = (0.0, 1.0);
         let sign = slope(low).signum();
-        if !(slope(low) * slope(high) < 0.0) {
+        let is_crossed = slope(low) * slope(high) < 0.0;
+        if !is_crossed {
             return None;
         }
         for _ in 0..50 {
