@@ -1,7 +1,8 @@
 //! Level curves in the plane against closed forms: the half-open rule and saddles.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use glam::DVec3;
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::surface::formula::{Formula, Variables};
 use hiddenline::stages::surface::{
@@ -116,6 +117,49 @@ fn curves_of_functions_run_through_points_of_them() {
                 let z = formula.value(x, y);
                 let off = levels.iter().map(|level| (level - z).abs()).fold(1.0, f64::min);
                 assert!(off < 1e-11, "{text} at {x}, {y}: {z}");
+            }
+        }
+    }
+}
+
+/// The area of a triangle in the plane, twice, with its sign.
+fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).truncate().perp_dot((c - a).truncate())
+}
+
+#[test]
+fn curves_of_functions_have_no_loose_ends_and_no_triangle_is_turned_over() {
+    for text in ["(x-0.3)^2 - (y+0.7)^2", "sin(x)*cos(y)", "sin(x*y)", "min(x, sin(y))", "x^3-3*x*y^2"]
+    {
+        let formula = Formula::parse(text, Variables::Plane).expect("a formula");
+        for n in [21, 40] {
+            let grid = Grid::sample(&formula, (-5.0, 5.0), (-5.0, 5.0), (n, n));
+            let mut grid = grid.expect("a grid");
+            grid.scale_heights(0.1);
+            let (low, high) = grid.heights().expect("heights");
+            let level = |k: i32| low + (high - low) * f64::from(k) / 16.0;
+            let levels: Vec<f64> = (1..16).map(level).collect();
+            let function = HeightFunction::new(formula.clone(), 0.1);
+            let mut mesh = LinedMesh::for_levels(&levels);
+            mesh.begin_sheet(Some(function.clone()));
+            mesh.push_grid(&grid, &NO_LINES);
+            mesh.add_levels(&levels);
+            let mesh = mesh.into_mesh().expect("a mesh");
+            for corners in (0..mesh.n_faces()).map(|face| mesh.face(face as u32)) {
+                let corners = [corners[0], corners[1], corners[2]];
+                let corners = corners.map(|v| mesh.positions()[v as usize]);
+                assert!(area(corners) > 0.0, "{text}, {n}: {corners:?}");
+            }
+            let mut n_ends: BTreeMap<[u64; 2], usize> = BTreeMap::new();
+            for [ax, ay, bx, by] in traced(&grid, Some(function), &levels) {
+                for end in [[ax, ay], [bx, by]] {
+                    *n_ends.entry(end.map(|c| (c + 0.0).to_bits())).or_default() += 1;
+                }
+            }
+            for (end, n) in n_ends {
+                let [x, y] = end.map(f64::from_bits);
+                let is_inside = x.abs() < 5.0 && y.abs() < 5.0;
+                assert!(!is_inside || n % 2 == 0, "{text}, {n}: an end at {x}, {y}");
             }
         }
     }
