@@ -182,7 +182,10 @@ fn set(row: &[AtomicU64], left: usize, right: usize) {
         let from = if word == first { left % 64 } else { 0 };
         let to = if word == last { right % 64 } else { 63 };
         let mask = (u64::MAX >> (63 - to)) & (u64::MAX << from);
-        bits.fetch_or(mask, Ordering::Relaxed);
+        // Most cells are covered more than once, and reading is cheap.
+        if bits.load(Ordering::Relaxed) & mask != mask {
+            bits.fetch_or(mask, Ordering::Relaxed);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Which ink is near a segment, and along which part of it.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::extent::window::Window;
 use crate::strokes::draft::Draft;
@@ -11,7 +12,7 @@ const SPARE_ENTRIES: f64 = (1 << 16) as f64;
 
 /// Most cells of a grid, and most for each segment, with some more for few segments.
 const MAX_CELLS: f64 = (1 << 22) as f64;
-const CELLS_PER_SEGMENT: f64 = 4.0;
+const CELLS_PER_SEGMENT: f64 = 1.0;
 
 /// Parts of a stretch that are this close to its ends, or to each other, as fractions of its length, meet
 /// there: they were computed with rounding.
@@ -44,17 +45,19 @@ impl SegmentGrid {
             .flat_map(|stroke| std::iter::repeat_n(stroke as u32, draft.range(stroke).len()))
             .collect();
         let is_segment = |i: &usize| *i + 1 < points.len() && strokes[*i] == strokes[*i + 1];
-        let segments = || (0..points.len()).filter(is_segment);
         let inside = |i: usize| {
             let (a, b) = (points[i].at, points[i + 1].at);
-            box_of_all.part_inside(a, b).map(|(t0, t1)| [t0, t1].map(|t| a.lerp(b, t)))
+            let part = box_of_all.part_inside(a, b);
+            part.map(|(t0, t1)| (i as u32, [t0, t1].map(|t| a.lerp(b, t))))
         };
-        let (mut n, mut ink) = (0.0, 0.0);
-        for i in segments() {
-            let [a, b] = inside(i).unwrap_or_default();
-            ink += (b - a).abs().element_sum();
-            n += 1.0;
-        }
+        let segments: Vec<(u32, [DVec2; 2])> = (0..points.len())
+            .into_par_iter()
+            .with_min_len(1024)
+            .filter(is_segment)
+            .filter_map(inside)
+            .collect();
+        let n = segments.len() as f64;
+        let ink: f64 = segments.iter().map(|(_, [a, b])| (*b - *a).abs().element_sum()).sum();
         let size = high - low;
         let max_cells = (CELLS_PER_SEGMENT * n + SPARE_ENTRIES).min(MAX_CELLS);
         let cell = cell
@@ -68,28 +71,24 @@ impl SegmentGrid {
             cell,
             columns,
             rows,
-            starts: vec![0; columns * rows + 1],
+            starts: vec![0; columns * rows + 2],
             segments: Vec::new(),
             strokes: Vec::new(),
         };
+        // While they are counted and sorted, the entries of a cell belong to the next one.
         let mut starts = std::mem::take(&mut grid.starts);
-        for i in segments() {
-            if let Some([a, b]) = inside(i) {
-                grid.cells(a, b, 0.0, |c| starts[c + 1] += 1);
-            }
+        for &(_, [a, b]) in &segments {
+            grid.cells(a, b, 0.0, |c| starts[c + 2] += 1);
         }
         for c in 1..starts.len() {
             starts[c] += starts[c - 1];
         }
-        let mut next = starts.clone();
         let mut sorted = vec![0; starts.last().map_or(0, |&n| n as usize)];
-        for i in segments() {
-            if let Some([a, b]) = inside(i) {
-                grid.cells(a, b, 0.0, |c| {
-                    sorted[next[c] as usize] = i as u32;
-                    next[c] += 1;
-                });
-            }
+        for &(segment, [a, b]) in &segments {
+            grid.cells(a, b, 0.0, |c| {
+                sorted[starts[c + 1] as usize] = segment;
+                starts[c + 1] += 1;
+            });
         }
         Self { starts, segments: sorted, strokes, ..grid }
     }
@@ -118,9 +117,15 @@ impl SegmentGrid {
         let row = |y: f64| (((y - self.window.low.y) / self.cell) as usize).min(self.rows - 1);
         let column =
             |x: f64| (((x - self.window.low.x) / self.cell) as usize).min(self.columns - 1);
-        let slope = (top.x - bottom.x) / (top.y - bottom.y);
         let (left, right) = (a.x.min(b.x), a.x.max(b.x));
-        for r in row(bottom.y - margin)..=row(top.y + margin) {
+        let (first, last) = (row(bottom.y - margin), row(top.y + margin));
+        if first == last {
+            (column(left - margin)..=column(right + margin))
+                .for_each(|c| visit(first * self.columns + c));
+            return;
+        }
+        let slope = (top.x - bottom.x) / (top.y - bottom.y);
+        for r in first..=last {
             let y = self.window.low.y + r as f64 * self.cell;
             let at = |y: f64| bottom.x + (y - bottom.y) * slope;
             let (x0, x1) = (at(y - margin), at(y + self.cell + margin));
