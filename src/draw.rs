@@ -271,7 +271,6 @@ pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: 
                 .then_some(options.overlap_mm.unwrap_or(0.5 * options.pen_width_mm)),
             thin_mm: options.thin_mm,
             halo_mm: options.halo_mm,
-            usual_thin_mm: DEFAULT_THIN * options.pen_width_mm,
             mm_per_unit,
         };
         finish(&view, drafts, &drafting)

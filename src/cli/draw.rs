@@ -220,15 +220,18 @@ fn strokes(
     }
     run.stats.count(MeshSize::of(scene));
     run.stats.add(&drawn);
-    run.notes.add(drafting_notes(&drawn.drafted));
+    run.notes.add(drafting_notes(&drawn.drafted, job.draw.thin_mm.is_some()));
     if drawn.drawing.is_empty() {
         run.empty_because = why_empty(job, scene, &sheet, drawn.n_lines);
     }
     Ok((drawn.drawing, sheet))
 }
 
+/// Thinning is proposed when more than this share of the ink is crowded.
+const CROWDED_SHARE: f64 = 0.25;
+
 /// What finishing the lines on paper did, and what would help.
-fn drafting_notes(drafted: &Drafted) -> Notes {
+fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
     let mm = |length: f64| format!("{length:.0} mm");
     let done = [
         (drafted.n_joined > 0, format!("{} ends joined", drafted.n_joined)),
@@ -249,12 +252,11 @@ fn drafting_notes(drafted: &Drafted) -> Notes {
     if !done.is_empty() {
         notes.summary = format!("\nlines: {}", done.join(", "));
     }
-    if let Some(saved) = drafted.thinning_saves {
+    if !is_thinned && drafted.crowded_share > CROWDED_SHARE {
         notes.hints.push(format!(
             "{:.0} % of the ink has other ink beside it within a pen's width; --thin leaves room \
-             between lines and {:.0} % of the ink out",
+             between lines",
             100.0 * drafted.crowded_share,
-            100.0 * saved
         ));
     }
     notes

@@ -24,6 +24,16 @@ const SHORTEST_RUN_MM: f64 = 1.0;
 /// the distance at which ink lies on ink.
 const OWN_REACH: f64 = 3.0;
 
+/// Of this many segments is measured how crowded they are.
+const CROWDED_SAMPLE: usize = 1 << 15;
+
+/// Units are compared with each other block by block, of about this many segments: what is known of their
+/// company takes memory.
+const BLOCK_SEGMENTS: u32 = 1 << 16;
+
+/// A segment from end to end, as fractions of its length.
+const WHOLE: (f64, f64) = (0.0, 1.0);
+
 /// When ink is left out; lengths in image units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rule {
@@ -45,48 +55,68 @@ pub(super) struct Rule {
 
 /// The draft without what the rule leaves out, and the length of that.
 ///
-/// O(segments + pairs of segments that run beside each other), in parallel but for the latter.
+/// O(segments + pairs of segments that run beside each other), in parallel but for what is kept of the
+/// latter.
 pub(super) fn leave_out(draft: &Draft, paper: &Paper, rule: &Rule) -> (Draft, f64) {
     let search = Search::new(draft, paper, rule);
-    let has_company = search.with_company();
-    if !has_company.contains(&true) {
-        return (draft.clone(), 0.0);
+    let units = units(draft, &search.ends, SHORTEST_RUN_MM * paper.mm);
+    let mut ranks = vec![0; draft.points().len()];
+    for (rank, unit) in units.iter().enumerate() {
+        ranks[unit.first as usize..unit.end as usize].fill(rank as u32);
     }
     let mut kept = Kept::new(draft);
     let (mut near, mut crowded) = (Parts::default(), Parts::default());
-    let mut left_out = 0.0;
-    for unit in units(draft, &search.ends, SHORTEST_RUN_MM * paper.mm) {
-        near.clear();
-        crowded.clear();
-        for segment in unit.first..unit.end {
-            if has_company[segment as usize] {
-                search.compare(segment, &unit, &kept, &mut near, &mut crowded);
+    let (mut left_out, mut has_company) = (0.0, false);
+    for block in blocks(&units) {
+        let found: Vec<Vec<Company>> = block
+            .par_iter()
+            .with_min_len(16)
+            .map_init(Vec::new, |others, unit| search.company(unit, &ranks, others))
+            .collect();
+        for (unit, companies) in block.iter().zip(&found) {
+            near.clear();
+            crowded.clear();
+            has_company |= !companies.is_empty();
+            for company in companies {
+                search.compare(company, unit, &kept, &mut near, &mut crowded);
             }
+            let pieces = kept_pieces(&search.ends, unit, near.join(0.0), crowded.join(0.0), rule);
+            let length: f64 = pieces.iter().map(|(from, to)| to - from).sum();
+            let whole = search.ends.along(unit.end) - search.ends.along(unit.first);
+            left_out += (whole - length).max(0.0);
+            pieces.iter().for_each(|&(from, to)| kept.add(&search.ends, unit, from, to));
         }
-        let pieces = kept_pieces(&search.ends, &unit, near.join(0.0), crowded.join(0.0), rule);
-        let length: f64 = pieces.iter().map(|(from, to)| to - from).sum();
-        left_out += (search.ends.along(unit.end) - search.ends.along(unit.first) - length).max(0.0);
-        pieces.iter().for_each(|&(from, to)| kept.add(&search.ends, &unit, from, to));
+    }
+    if !has_company {
+        return (draft.clone(), 0.0);
     }
     (kept.into_draft(draft, &search.ends), left_out)
 }
 
-/// The share of the ink beside which other ink runs as the rule says, whichever is more important.
+/// The share of the ink beside which other ink runs as the rule says, whichever is more important. Of
+/// large drawings, that of [`CROWDED_SAMPLE`] segments spread over all strokes.
 pub(super) fn crowded_share(draft: &Draft, paper: &Paper, rule: &Rule) -> f64 {
     let search = Search::new(draft, paper, rule);
-    let lengths = |segment: u32| {
+    let lengths = |others: &mut Vec<u32>, segment: u32| {
         let points = draft.points();
         let [a, b] = [segment, segment + 1].map(|k| points[k as usize].at);
         let mut parts = Parts::default();
-        search.for_each_company(segment, |other| {
-            if let Some((t0, t1)) = search.part_beside(segment, other, (0.0, 1.0), rule.crowded) {
+        search.beside(segment, |_| true, others);
+        for &other in others.iter() {
+            if let Some((t0, t1)) = search.part_beside(segment, other, WHOLE, rule.crowded) {
                 parts.add(t0, t1);
             }
-        });
+        }
         let crowded: f64 = parts.join(0.0).iter().map(|(from, to)| to - from).sum();
         [crowded * a.distance(b), a.distance(b)]
     };
-    let segments: Vec<[f64; 2]> = search.segments().into_par_iter().map(lengths).collect();
+    let segments = search.segments();
+    let step = segments.len().div_ceil(CROWDED_SAMPLE).max(1);
+    let segments: Vec<[f64; 2]> = segments
+        .into_par_iter()
+        .step_by(step)
+        .map_init(Vec::new, |others, segment| lengths(others, segment))
+        .collect();
     let [crowded, all] =
         segments.iter().fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
     if all > 0.0 { crowded / all } else { 0.0 }
@@ -125,6 +155,22 @@ fn units(draft: &Draft, ends: &Ends, shortest: f64) -> Vec<Unit> {
         by_kind.then(b.length.total_cmp(&a.length)).then(a.first.cmp(&b.first))
     });
     units
+}
+
+/// The units cut into blocks.
+fn blocks(units: &[Unit]) -> impl Iterator<Item = &[Unit]> {
+    let mut rest = units;
+    std::iter::from_fn(move || {
+        let mut n_segments = 0;
+        let is_inside = |unit: &&Unit| {
+            n_segments += unit.end - unit.first;
+            n_segments <= BLOCK_SEGMENTS
+        };
+        let n = rest.iter().take_while(is_inside).count().max(1).min(rest.len());
+        let (block, after) = rest.split_at(n);
+        rest = after;
+        (!block.is_empty()).then_some(block)
+    })
 }
 
 /// The order of precedence: visible before hidden lines, then by kind.
@@ -173,6 +219,15 @@ fn kept_pieces(
     pieces
 }
 
+/// Two segments that run beside each other, and the parts of the first one that do so if all of the other
+/// one is there.
+struct Company {
+    segment: u32,
+    other: u32,
+    near: (f64, f64),
+    crowded: Option<(f64, f64)>,
+}
+
 /// Finds ink beside ink.
 struct Search<'a> {
     draft: &'a Draft,
@@ -195,37 +250,42 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// For each segment whether there is ink beside it at all.
-    fn with_company(&self) -> Vec<bool> {
-        let segments = self.segments();
-        let found: Vec<bool> = segments
-            .par_iter()
-            .with_min_len(256)
-            .map(|&segment| {
-                let mut is_found = false;
-                self.for_each_company(segment, |other| {
-                    is_found = is_found
-                        || self.part_beside(segment, other, (0.0, 1.0), self.rule.near).is_some();
-                });
-                is_found
-            })
-            .collect();
-        let mut has_company = vec![false; self.draft.points().len()];
-        segments
-            .iter()
-            .zip(found)
-            .for_each(|(&segment, found)| has_company[segment as usize] = found);
-        has_company
+    /// The ink of higher precedence that runs beside a unit.
+    fn company(&self, unit: &Unit, ranks: &[u32], others: &mut Vec<u32>) -> Vec<Company> {
+        let mut companies = Vec::new();
+        for segment in unit.first..unit.end {
+            // Of the unit itself the earlier segments count.
+            let key = |segment: u32| (ranks[segment as usize], segment);
+            self.beside(segment, |other| key(other) < key(segment), others);
+            for &other in others.iter() {
+                if let Some(near) = self.part_beside(segment, other, WHOLE, self.rule.near) {
+                    let crowded = if self.rule.crowded == self.rule.near {
+                        Some(near)
+                    } else {
+                        self.part_beside(segment, other, WHOLE, self.rule.crowded)
+                    };
+                    companies.push(Company { segment, other, near, crowded });
+                }
+            }
+        }
+        companies
     }
 
-    /// Calls `f` with the segments near one that run in its direction, some more than once.
-    fn for_each_company(&self, segment: u32, mut f: impl FnMut(u32)) {
+    /// Replaces `others` by the segments near one that run in its direction and of which `counts` says
+    /// so, in order.
+    fn beside(&self, segment: u32, counts: impl Fn(u32) -> bool, others: &mut Vec<u32>) {
+        others.clear();
         let [a, b] = self.at(segment);
         self.grid.near(a, b, self.rule.near, |other| {
-            let [p, q] = self.at(other);
-            if other != segment && are_parallel(b - a, q - p, self.rule.sine) {
-                f(other);
+            if other != segment && counts(other) {
+                others.push(other);
             }
+        });
+        others.sort_unstable();
+        others.dedup();
+        others.retain(|&other| {
+            let [p, q] = self.at(other);
+            are_parallel(b - a, q - p, self.rule.sine)
         });
     }
 
@@ -276,36 +336,36 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Adds the parts of a segment beside which there is ink that was kept, as lengths along the stroke.
+    /// Adds the parts of a segment beside which its company was kept, as lengths along the stroke.
     fn compare(
         &self,
-        segment: u32,
+        company: &Company,
         unit: &Unit,
         kept: &Kept,
         near: &mut Parts,
         crowded: &mut Parts,
     ) {
+        let &Company { segment, other, .. } = company;
         let [a, b] = self.at(segment);
         let (start, length) = (self.ends.along(segment), a.distance(b));
-        self.for_each_company(segment, |other| {
-            let mut add = |part: (f64, f64)| {
-                for (reach, parts) in
-                    [(self.rule.near, &mut *near), (self.rule.crowded, &mut *crowded)]
-                {
-                    if let Some((t0, t1)) = self.part_beside(segment, other, part, reach) {
-                        parts.add(start + t0 * length, start + t1 * length);
-                    }
-                }
-            };
-            // Of the unit itself the earlier segments count.
-            if (unit.first..unit.end).contains(&other) {
-                if other < segment {
-                    add((0.0, 1.0));
-                }
+        let mut add = |part: (f64, f64)| {
+            let found = if part == WHOLE {
+                [Some(company.near), company.crowded]
             } else {
-                kept.parts(other).for_each(add);
+                [self.rule.near, self.rule.crowded]
+                    .map(|reach| self.part_beside(segment, other, part, reach))
+            };
+            for (found, parts) in found.into_iter().zip([&mut *near, &mut *crowded]) {
+                if let Some((t0, t1)) = found {
+                    parts.add(start + t0 * length, start + t1 * length);
+                }
             }
-        });
+        };
+        if (unit.first..unit.end).contains(&other) {
+            add(WHOLE);
+        } else {
+            kept.parts(other).for_each(add);
+        }
     }
 }
 

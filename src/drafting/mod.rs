@@ -13,6 +13,7 @@
 mod background;
 mod edits;
 mod halo;
+mod inked;
 mod leave_out;
 mod near;
 mod outline;
@@ -24,7 +25,7 @@ use glam::DVec2;
 use crate::camera::Projection;
 use crate::classify::ViewedScene;
 use crate::model::creases::looseness;
-use crate::strokes::draft::{Draft, length};
+use crate::strokes::draft::Draft;
 
 use self::background::LazyBackground;
 use self::edits::Tidied;
@@ -57,9 +58,6 @@ const SHORTEST_PIECE_MM: f64 = 0.5;
 
 /// Lines crowd each other when their directions differ by no more than this, in degrees.
 const CROWDED_TURN_DEG: f64 = 30.0;
-
-/// Thinning is proposed when more than this share of the ink is crowded.
-const CROWDED_SHARE: f64 = 0.25;
 
 /// Thinned lines return only where there is this much more room than where they ended.
 const THIN_RETURN: f64 = 1.4;
@@ -101,8 +99,6 @@ pub struct DraftingOptions {
     pub thin_mm: Option<f64>,
     /// How far farther lines stop short of nearer ones, in millimeters; zero for not at all.
     pub halo_mm: f64,
-    /// [`thin_mm`](Self::thin_mm) to propose where too many lines crowd each other.
-    pub usual_thin_mm: f64,
     /// Millimeters on paper of an image unit.
     pub mm_per_unit: f64,
 }
@@ -122,11 +118,8 @@ pub struct Drafted {
     pub overlap_mm: f64,
     /// Length of what was left out where lines crowded each other, in millimeters.
     pub thinned_mm: f64,
-    /// The share of the ink that has other ink beside it within a pen's width.
+    /// The share of the ink that has other ink beside it within a pen's width, before lines are thinned.
     pub crowded_share: f64,
-    /// The share of the ink that thinning by [`DraftingOptions::usual_thin_mm`] would leave out;
-    /// `None` where lines are thinned, or need not be.
-    pub thinning_saves: Option<f64>,
 }
 
 /// Finishes the visible and the hidden lines of a view.
@@ -168,12 +161,9 @@ pub fn finish(
         }
     }
     let crowded_share = crowded_share(&all, &paper, &paper.crowds(options.pen_width_mm));
-    let (mut thinned, mut thinning_saves) = (0.0, None);
+    let mut thinned = 0.0;
     if let Some(distance_mm) = options.thin_mm {
         (all, thinned) = leave_out(&all, &paper, &paper.crowds(distance_mm));
-    } else if crowded_share > CROWDED_SHARE {
-        let (_, saved) = leave_out(&all, &paper, &paper.crowds(options.usual_thin_mm));
-        thinning_saves = Some(saved / all.iter().map(length).sum::<f64>());
     }
     if options.halo_mm > 0.0 {
         let is_perspective = matches!(view.camera().projection(), Projection::Perspective { .. });
@@ -190,7 +180,6 @@ pub fn finish(
         overlap_mm: overlap / paper.mm,
         thinned_mm: thinned / paper.mm,
         crowded_share,
-        thinning_saves,
     };
     (all, drafted)
 }

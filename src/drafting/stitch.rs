@@ -19,6 +19,7 @@ use crate::strokes::draft::Draft;
 
 use super::Paper;
 use super::edits::{Edits, Ends, Tidied};
+use super::inked::Inked;
 use super::near::SegmentGrid;
 
 /// Strokes go on into each other when they turn less than this.
@@ -50,16 +51,16 @@ struct Joint {
     gap: f64,
 }
 
-/// Joins what can be joined; `None` when that is nothing. Each end is joined once.
+/// Joins what can be joined, and says whether that was anything. Each end is joined once.
 /// O(points near ends), in parallel.
-pub(super) fn stitch(draft: &Draft, paper: &Paper, tidied: &mut Tidied) -> Option<Draft> {
-    let grid = paper.grid(draft, paper.pen);
+pub(super) fn stitch(inked: &mut Inked, tidied: &mut Tidied) -> bool {
+    let (draft, paper, grid) = (inked.draft(), inked.paper(), inked.grid());
     let ends = Ends::new(draft);
     let mut joints: Vec<Joint> = (0..2 * draft.len() as u32)
         .into_par_iter()
         .with_min_len(64)
         .filter(|&end| ends.has(end / 2))
-        .flat_map_iter(|end| joints_at(end, draft, &grid, &ends, paper))
+        .flat_map_iter(|end| joints_at(end, draft, grid, &ends, paper))
         .collect();
     let key = |joint: &Joint| (joint.has_stub, joint.ends);
     joints.sort_unstable_by(|a, b| a.badness.total_cmp(&b.badness).then(key(a).cmp(&key(b))));
@@ -78,7 +79,11 @@ pub(super) fn stitch(draft: &Draft, paper: &Paper, tidied: &mut Tidied) -> Optio
         tidied.farthest = tidied.farthest.max(joint.gap);
     }
     tidied.n_joined += n_joined;
-    (n_joined > 0).then(|| edits.apply(draft))
+    if n_joined > 0 {
+        let joined = edits.apply(draft);
+        inked.change(joined);
+    }
+    n_joined > 0
 }
 
 fn joints_at(

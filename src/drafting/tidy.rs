@@ -21,6 +21,7 @@ use crate::strokes::draft::{Draft, DraftPoint, extent, is_closed, length};
 use super::Paper;
 use super::background::LazyBackground;
 use super::edits::{Edits, Ends, Tidied};
+use super::inked::Inked;
 use super::near::{Parts, ROUNDING, SegmentGrid, part_within};
 use super::stitch::stitch;
 
@@ -49,22 +50,17 @@ pub(super) fn tidy(
     shortest: f64,
     tidied: &mut Tidied,
 ) -> Draft {
-    let mut draft = draft;
-    let rounds = |draft: &mut Draft, tidied: &mut Tidied| {
-        for _ in 0..ROUNDS {
-            let Some(joined) = stitch(draft, paper, tidied) else { break };
-            *draft = joined;
-        }
-    };
-    rounds(&mut draft, tidied);
-    draft = corners(draft, paper, tidied);
-    draft = shadows(draft, paper, tidied);
-    rounds(&mut draft, tidied);
-    draft = specks_and_spurs(draft, paper, background, tidied);
-    draft = corners(draft, paper, tidied);
-    draft = shadows(draft, paper, tidied);
-    rounds(&mut draft, tidied);
-    without(draft, tidied, |points| extent(points) < shortest)
+    let mut inked = Inked::new(draft, paper);
+    join_ends(&mut inked, tidied);
+    corners(&mut inked, tidied);
+    shadows(&mut inked, tidied);
+    join_ends(&mut inked, tidied);
+    specks_and_spurs(&mut inked, background, tidied);
+    corners(&mut inked, tidied);
+    shadows(&mut inked, tidied);
+    join_ends(&mut inked, tidied);
+    leave_out_shorter(&mut inked, shortest, tidied);
+    inked.into_draft()
 }
 
 /// Joins what goes on into each other after parts were left out, around corners too, and leaves out
@@ -76,24 +72,29 @@ pub(super) fn rejoin(
     shortest: f64,
 ) -> Draft {
     let mut tidied = Tidied::default();
-    let [visible, hidden] = draft.by_visibility().map(|mut draft| {
-        for _ in 0..ROUNDS {
-            let Some(joined) = stitch(&draft, paper, &mut tidied) else { break };
-            draft = joined;
-        }
-        corners(draft, paper, &mut tidied)
-    });
-    let visible = shadows(visible, paper, &mut tidied);
-    let visible = specks_and_spurs(visible, paper, Some(background), &mut tidied);
-    let mut all = without(visible, &mut tidied, |points| extent(points) < shortest);
-    all.append(&hidden);
+    let [mut visible, mut hidden] = draft.by_visibility().map(|draft| Inked::new(draft, paper));
+    for inked in [&mut visible, &mut hidden] {
+        join_ends(inked, &mut tidied);
+        corners(inked, &mut tidied);
+    }
+    shadows(&mut visible, &mut tidied);
+    specks_and_spurs(&mut visible, Some(background), &mut tidied);
+    leave_out_shorter(&mut visible, shortest, &mut tidied);
+    let mut all = visible.into_draft();
+    all.append(hidden.draft());
     all
 }
 
+/// Stitches until nothing joins.
+fn join_ends(inked: &mut Inked, tidied: &mut Tidied) {
+    let mut rounds = 0..ROUNDS;
+    while rounds.next().is_some() && stitch(inked, tidied) {}
+}
+
 /// Joins two ends within a pen's width of each other, whatever the turn, if no third one is there.
-fn corners(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
-    let grid = paper.grid(&draft, paper.pen);
-    let ends = Ends::new(&draft);
+fn corners(inked: &mut Inked, tidied: &mut Tidied) {
+    let (draft, paper, grid) = (inked.draft(), inked.paper(), inked.grid());
+    let ends = Ends::new(draft);
     let n_ends = 2 * draft.len() as u32;
     // The only other end near each, if there is one.
     let only: Vec<Option<u32>> = (0..n_ends)
@@ -104,7 +105,7 @@ fn corners(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
                 return None;
             }
             let (mut found, mut is_only) = (None, true);
-            for_each_end_near(end, &draft, &grid, &ends, paper.pen, |other| {
+            for_each_end_near(end, draft, grid, &ends, paper.pen, |other| {
                 is_only &= found.is_none_or(|known| known == other);
                 found = Some(other);
             });
@@ -126,7 +127,10 @@ fn corners(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
         }
     }
     tidied.n_joined += n_joined;
-    if n_joined > 0 { edits.apply(&draft) } else { draft }
+    if n_joined > 0 {
+        let joined = edits.apply(draft);
+        inked.change(joined);
+    }
 }
 
 /// Calls `f` with the ends within `reach` of an end, some more than once.
@@ -155,8 +159,8 @@ fn for_each_end_near(
 }
 
 /// Leaves out short strokes all of which lies within a pen's width of longer ones.
-fn shadows(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
-    let grid = paper.grid(&draft, paper.pen);
+fn shadows(inked: &mut Inked, tidied: &mut Tidied) {
+    let (draft, paper, grid) = (inked.draft(), inked.paper(), inked.grid());
     let lengths: Vec<f64> = draft.iter().map(length).collect();
     let points = draft.points();
     let is_longer = |other: u32, stroke: usize| {
@@ -187,33 +191,26 @@ fn shadows(draft: Draft, paper: &Paper, tidied: &mut Tidied) -> Draft {
         .with_min_len(64)
         .map_init(Parts::default, |parts, stroke| is_shadow(stroke, parts))
         .collect();
-    let mut edits = Edits::new(&draft);
-    for stroke in (0..draft.len()).filter(|&stroke| shadows[stroke]) {
-        edits.drop(stroke);
-        tidied.n_dropped += 1;
-        tidied.dropped += lengths[stroke];
-    }
-    if shadows.contains(&true) { edits.apply(&draft) } else { draft }
+    leave_out(inked, &shadows, tidied);
 }
 
 /// Leaves out small isolated figures, and short strokes with a loose end. One pass: what a stroke hung
 /// on is not left out next.
 fn specks_and_spurs(
-    draft: Draft,
-    paper: &Paper,
+    inked: &mut Inked,
     background: Option<&mut LazyBackground>,
     tidied: &mut Tidied,
-) -> Draft {
+) {
+    let (draft, paper) = (inked.draft(), inked.paper());
     // Only of what could be left out need be known what it is.
     let is_small = |points: &[DraftPoint]| {
         extent(points) < paper.figure && !is_border(points) && !is_loop(points, paper)
     };
     if !draft.iter().any(is_small) {
-        return draft;
+        return;
     }
     let background = background.map(|background| background.get());
-    let grid = paper.grid(&draft, paper.pen);
-    let ends = Ends::new(&draft);
+    let (grid, ends) = (inked.grid(), Ends::new(draft));
     // Strokes near each end; they may repeat.
     let near: Vec<Vec<u32>> = (0..2 * draft.len() as u32)
         .into_par_iter()
@@ -261,22 +258,16 @@ fn specks_and_spurs(
     for stroke in 0..draft.len() {
         figure_holds[figures.of(stroke as u32) as usize] |= holds[stroke];
     }
-    let mut edits = Edits::new(&draft);
-    let mut n_dropped = 0;
-    for stroke in 0..draft.len() {
+    let mut is_left_out = |stroke: usize| {
         let figure = figures.of(stroke as u32) as usize;
         let (low, high) = boxes[figure];
         let is_speck = low.distance(high) < paper.figure && !figure_holds[figure];
         let is_loose = |side: usize| near[2 * stroke + side].is_empty();
         let is_spur = !holds[stroke] && ends.has(stroke as u32) && (is_loose(0) || is_loose(1));
-        if is_speck || is_spur {
-            edits.drop(stroke);
-            n_dropped += 1;
-            tidied.dropped += length(draft.stroke(stroke));
-        }
-    }
-    tidied.n_dropped += n_dropped;
-    if n_dropped > 0 { edits.apply(&draft) } else { draft }
+        is_speck || is_spur
+    };
+    let left_out: Vec<bool> = (0..draft.len()).map(&mut is_left_out).collect();
+    leave_out(inked, &left_out, tidied);
 }
 
 /// Whether a stroke has a part that ends a surface, or that the model has as a line of its own.
@@ -297,19 +288,25 @@ fn is_loop(points: &[DraftPoint], paper: &Paper) -> bool {
         && area >= paper.pen * extent
 }
 
-/// The draft without strokes of which `is_left_out` says so.
-fn without(
-    draft: Draft,
-    tidied: &mut Tidied,
-    is_left_out: impl Fn(&[DraftPoint]) -> bool,
-) -> Draft {
-    let mut edits = Edits::new(&draft);
-    let mut n_dropped = 0;
-    for (stroke, points) in draft.iter().enumerate().filter(|(_, points)| is_left_out(points)) {
+/// Leaves out the strokes whose extent is below `shortest`.
+fn leave_out_shorter(inked: &mut Inked, shortest: f64, tidied: &mut Tidied) {
+    let is_short: Vec<bool> =
+        inked.draft().iter().map(|points| extent(points) < shortest).collect();
+    leave_out(inked, &is_short, tidied);
+}
+
+/// Leaves out the strokes of which `is_left_out` says so.
+fn leave_out(inked: &mut Inked, is_left_out: &[bool], tidied: &mut Tidied) {
+    if !is_left_out.contains(&true) {
+        return;
+    }
+    let draft = inked.draft();
+    let mut edits = Edits::new(draft);
+    for (stroke, points) in draft.iter().enumerate().filter(|(stroke, _)| is_left_out[*stroke]) {
         edits.drop(stroke);
-        n_dropped += 1;
+        tidied.n_dropped += 1;
         tidied.dropped += length(points);
     }
-    tidied.n_dropped += n_dropped;
-    if n_dropped > 0 { edits.apply(&draft) } else { draft }
+    let rest = edits.apply(draft);
+    inked.change(rest);
 }
