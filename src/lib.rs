@@ -124,6 +124,21 @@
 //! pieces and image coordinates are rounded, each once. Points where faces cross are not vertices, but
 //! they enter decisions unrounded too.
 //!
+//! # Features
+//!
+//! All are on by default, for the program. A library that only draws can leave them out with
+//! `default-features = false`: OBJ, STL and OFF are always read, and SVG and DXF written.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `3mf`, `gltf`, `ply` | model files of these formats |
+//! | `npz`, `tiff`, `png` | height files of these formats; `png` also writes PNG and shades previews |
+//! | `points` | surfaces through scattered points |
+//! | `pdf`, `json` | output of these formats |
+//! | `plotters` | HPGL and G-code, for machines described in TOML |
+//! | `svg-in` | reading line drawings from SVG, to optimize them |
+//! | `cli`, `view` | the program, and its viewer in the browser |
+//!
 //! # Units and frames
 //!
 //! World: model units, right-handed, z up. Image: see `camera`. Page: millimeters, see `plot`.
@@ -197,16 +212,18 @@ pub use api::{Error, SceneBuilder};
 pub use model::arrange::UpAxis;
 pub use model::mesh::{Mesh, PolygonSoup};
 pub use model::scene::Scene;
-pub use read::ModelFormat;
+pub use read::{ModelFormat, Warning};
 
 // A surface.
 pub use axes::Titles;
 pub use draw::surface::{Levels, SurfaceEngine, SurfaceLines, SurfaceNote};
-pub use surface::{Aspect, Grid, HeightField, HeightOptions, Surface};
+pub use engines::surface::CellOrder;
+pub use surface::formula::Formula;
+pub use surface::{Aspect, Grid, HeightField, HeightOptions, SampledSurface, Surface};
 
 // A view of it.
 pub use camera::Camera;
-pub use camera::framing::{NamedView, View};
+pub use camera::framing::{NamedView, ProjectionKind, Standpoint, View};
 
 // The lines.
 pub use api::{Drawing, SurfaceDrawing};
@@ -215,7 +232,7 @@ pub use draw::DrawOptions;
 pub use engines::edge::LineEngine;
 pub use engines::face::FaceEngine;
 pub use hatch::{
-    Ground, HatchError, HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows,
+    Ground, HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows,
 };
 pub use shading::fill::{FillOptions, Palette};
 pub use shading::light::LightSource;
@@ -229,3 +246,19 @@ pub use plot::{Layer, Pen, Plot, Polylines};
 // The plotter.
 pub use optimize::{Effort, OptimizeOptions};
 pub use write::{Format, Target};
+
+/// What each kind of [`Error`] is made of.
+pub mod errors {
+    pub use crate::camera::framing::ViewError;
+    pub use crate::draw::surface::SurfaceError;
+    pub use crate::hatch::HatchError;
+    pub use crate::model::mesh::MeshError;
+    pub use crate::page::PageError;
+    pub use crate::read::ReadError;
+    pub use crate::shading::fill::FillError;
+    #[cfg(feature = "points")]
+    pub use crate::surface::PointsError;
+    pub use crate::surface::formula::FormulaError;
+    pub use crate::surface::{GridError, HeightError};
+    pub use crate::write::WriteError;
+}

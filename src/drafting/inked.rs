@@ -1,24 +1,28 @@
-//! A draft, and where its ink is.
+//! A draft, and what is near what in it.
 
 use std::cell::OnceCell;
 
 use crate::strokes::draft::Draft;
 
 use super::Paper;
+use super::edits::Ends;
 use super::near::SegmentGrid;
+use super::near_ends::SegmentsNearEnds;
+use super::stitch::ON_STROKE_MM;
 
-/// A draft with its segments sorted into cells, for searches within a pen's width.
+/// A draft with its segments by place, for searches within a pen's width.
 ///
 /// They are sorted when they are first searched, and again after the draft was changed.
 pub(super) struct Inked<'a> {
     draft: Draft,
     paper: &'a Paper,
     grid: OnceCell<SegmentGrid>,
+    near_ends: OnceCell<SegmentsNearEnds>,
 }
 
 impl<'a> Inked<'a> {
     pub(super) fn new(draft: Draft, paper: &'a Paper) -> Self {
-        Self { draft, paper, grid: OnceCell::new() }
+        Self { draft, paper, grid: OnceCell::new(), near_ends: OnceCell::new() }
     }
 
     pub(super) fn draft(&self) -> &Draft {
@@ -32,6 +36,12 @@ impl<'a> Inked<'a> {
     /// The segments of the draft by cells.
     pub(super) fn grid(&self) -> &SegmentGrid {
         self.grid.get_or_init(|| self.paper.grid(&self.draft, self.paper.pen))
+    }
+
+    /// The segments within a pen's width, or within [`ON_STROKE_MM`], of each end.
+    pub(super) fn near_ends(&self, ends: &Ends) -> &SegmentsNearEnds {
+        let reach = self.paper.pen.max(ON_STROKE_MM * self.paper.mm);
+        self.near_ends.get_or_init(|| SegmentsNearEnds::new(&self.draft, ends, self.paper, reach))
     }
 
     /// Puts a changed draft in place of this one.

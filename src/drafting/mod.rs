@@ -11,11 +11,13 @@
 //! ```
 
 mod background;
+mod cells;
 mod edits;
 mod halo;
 mod inked;
 mod leave_out;
 mod near;
+mod near_ends;
 mod outline;
 mod stitch;
 mod tidy;

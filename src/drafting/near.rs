@@ -6,28 +6,22 @@ use rayon::prelude::*;
 use crate::extent::window::Window;
 use crate::strokes::draft::Draft;
 
+use super::cells::{Cells, MAX_CELLS};
+
 /// Entries of a grid for each segment, at most, and some more for few segments.
 const ENTRIES_PER_SEGMENT: f64 = 6.0;
 const SPARE_ENTRIES: f64 = (1 << 16) as f64;
 
-/// Most cells of a grid, and most for each segment, with some more for few segments.
-const MAX_CELLS: f64 = (1 << 22) as f64;
+/// Most cells of a grid for each segment, with some more for few segments.
 const CELLS_PER_SEGMENT: f64 = 1.0;
 
 /// Parts of a stretch that are this close to its ends, or to each other, as fractions of its length, meet
 /// there: they were computed with rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// By how much more than asked cells are searched, as a fraction of a cell: far more than the rounding of
-/// the way to a cell. It costs time only.
-const CELL_SLACK: f64 = 1e-6;
-
 /// The segments of a draft by square cells. A segment goes by the number of its first point.
 pub(super) struct SegmentGrid {
-    window: Window,
-    cell: f64,
-    columns: usize,
-    rows: usize,
+    cells: Cells,
     starts: Vec<u32>,
     segments: Vec<u32>,
     /// The stroke of each point.
@@ -38,12 +32,9 @@ impl SegmentGrid {
     /// Sorts the segments into cells of at least `cell`, within a box of the image: what lies outside
     /// is near nothing. O(segments).
     pub(super) fn new(draft: &Draft, (low, high): (DVec2, DVec2), cell: f64) -> Self {
-        let window = || Window { low, high, slack: 0.0 };
-        let box_of_all = window();
+        let box_of_all = Window { low, high, slack: 0.0 };
         let points = draft.points();
-        let strokes: Vec<u32> = (0..draft.len())
-            .flat_map(|stroke| std::iter::repeat_n(stroke as u32, draft.range(stroke).len()))
-            .collect();
+        let strokes = draft.strokes_of_points();
         let is_segment = |i: &usize| *i + 1 < points.len() && strokes[*i] == strokes[*i + 1];
         let inside = |i: usize| {
             let (a, b) = (points[i].at, points[i + 1].at);
@@ -58,39 +49,25 @@ impl SegmentGrid {
             .collect();
         let n = segments.len() as f64;
         let ink: f64 = segments.iter().map(|(_, [a, b])| (*b - *a).abs().element_sum()).sum();
-        let size = high - low;
+        let cell = cell.max(ink / (ENTRIES_PER_SEGMENT * n + SPARE_ENTRIES));
         let max_cells = (CELLS_PER_SEGMENT * n + SPARE_ENTRIES).min(MAX_CELLS);
-        let cell = cell
-            .max(ink / (ENTRIES_PER_SEGMENT * n + SPARE_ENTRIES))
-            .max((size.x * size.y / max_cells).sqrt())
-            .max(size.max_element() / max_cells)
-            .max(f64::MIN_POSITIVE);
-        let [columns, rows] = [size.x, size.y].map(|length| (length / cell) as usize + 1);
-        let mut grid = Self {
-            window: window(),
-            cell,
-            columns,
-            rows,
-            starts: vec![0; columns * rows + 2],
-            segments: Vec::new(),
-            strokes: Vec::new(),
-        };
+        let cells = Cells::new((low, high), cell, max_cells);
         // While they are counted and sorted, the entries of a cell belong to the next one.
-        let mut starts = std::mem::take(&mut grid.starts);
+        let mut starts = vec![0; cells.len() + 2];
         for &(_, [a, b]) in &segments {
-            grid.cells(a, b, 0.0, |c| starts[c + 2] += 1);
+            cells.near(a, b, 0.0, |c| starts[c + 2] += 1);
         }
         for c in 1..starts.len() {
             starts[c] += starts[c - 1];
         }
         let mut sorted = vec![0; starts.last().map_or(0, |&n| n as usize)];
         for &(segment, [a, b]) in &segments {
-            grid.cells(a, b, 0.0, |c| {
+            cells.near(a, b, 0.0, |c| {
                 sorted[starts[c + 1] as usize] = segment;
                 starts[c + 1] += 1;
             });
         }
-        Self { starts, segments: sorted, strokes, ..grid }
+        Self { cells, starts, segments: sorted, strokes }
     }
 
     /// The stroke that a point belongs to.
@@ -101,44 +78,10 @@ impl SegmentGrid {
     /// Calls `visit` with every segment within `margin` of the one from `a` to `b`, and with some
     /// others; with some more than once.
     pub(super) fn near(&self, a: DVec2, b: DVec2, margin: f64, mut visit: impl FnMut(u32)) {
-        let wide =
-            Window { low: self.window.low - margin, high: self.window.high + margin, slack: 0.0 };
-        let Some((t0, t1)) = wide.part_inside(a, b) else { return };
-        self.cells(a.lerp(b, t0), a.lerp(b, t1), margin, |c| {
+        self.cells.near(a, b, margin, |c| {
             let range = self.starts[c] as usize..self.starts[c + 1] as usize;
             self.segments[range].iter().for_each(|&segment| visit(segment));
         });
-    }
-
-    /// Calls `visit` with the cells within `margin` of a segment, and some others.
-    fn cells(&self, a: DVec2, b: DVec2, margin: f64, mut visit: impl FnMut(usize)) {
-        let margin = margin + CELL_SLACK * self.cell;
-        let (bottom, top) = if a.y <= b.y { (a, b) } else { (b, a) };
-        let row = |y: f64| (((y - self.window.low.y) / self.cell) as usize).min(self.rows - 1);
-        let column =
-            |x: f64| (((x - self.window.low.x) / self.cell) as usize).min(self.columns - 1);
-        let (left, right) = (a.x.min(b.x), a.x.max(b.x));
-        let (first, last) = (row(bottom.y - margin), row(top.y + margin));
-        if first == last {
-            (column(left - margin)..=column(right + margin))
-                .for_each(|c| visit(first * self.columns + c));
-            return;
-        }
-        let slope = (top.x - bottom.x) / (top.y - bottom.y);
-        for r in first..=last {
-            let y = self.window.low.y + r as f64 * self.cell;
-            let at = |y: f64| bottom.x + (y - bottom.y) * slope;
-            let (x0, x1) = (at(y - margin), at(y + self.cell + margin));
-            // A level segment has no slope: then its whole width counts.
-            let (x0, x1) = if x0.is_finite() && x1.is_finite() {
-                (x0.min(x1).clamp(left, right), x0.max(x1).clamp(left, right))
-            } else {
-                (left, right)
-            };
-            for c in column(x0 - margin)..=column(x1 + margin) {
-                visit(r * self.columns + c);
-            }
-        }
     }
 }
 

@@ -20,7 +20,7 @@ use crate::strokes::draft::Draft;
 use super::Paper;
 use super::edits::{Edits, Ends, Tidied};
 use super::inked::Inked;
-use super::near::SegmentGrid;
+use super::near_ends::SegmentsNearEnds;
 
 /// Strokes go on into each other when they turn less than this.
 const MAX_TURN_DEG: f64 = 60.0;
@@ -29,7 +29,7 @@ const MAX_TURN_DEG: f64 = 60.0;
 const DIRECTION_MM: f64 = 0.5;
 
 /// An end this near to a stroke lies on it.
-const ON_STROKE_MM: f64 = 0.02;
+pub(super) const ON_STROKE_MM: f64 = 0.02;
 
 /// Stubs are no longer than this many pen widths, whatever is beside them.
 const SHORT_STUB: f64 = 2.0;
@@ -54,13 +54,14 @@ struct Joint {
 /// Joins what can be joined, and says whether that was anything. Each end is joined once.
 /// O(points near ends), in parallel.
 pub(super) fn stitch(inked: &mut Inked, tidied: &mut Tidied) -> bool {
-    let (draft, paper, grid) = (inked.draft(), inked.paper(), inked.grid());
+    let (draft, paper) = (inked.draft(), inked.paper());
     let ends = Ends::new(draft);
+    let near_ends = inked.near_ends(&ends);
     let mut joints: Vec<Joint> = (0..2 * draft.len() as u32)
         .into_par_iter()
         .with_min_len(64)
         .filter(|&end| ends.has(end / 2))
-        .flat_map_iter(|end| joints_at(end, draft, grid, &ends, paper))
+        .flat_map_iter(|end| joints_at(end, draft, near_ends, &ends, paper))
         .collect();
     let key = |joint: &Joint| (joint.has_stub, joint.ends);
     joints.sort_unstable_by(|a, b| a.badness.total_cmp(&b.badness).then(key(a).cmp(&key(b))));
@@ -89,7 +90,7 @@ pub(super) fn stitch(inked: &mut Inked, tidied: &mut Tidied) -> bool {
 fn joints_at(
     end: u32,
     draft: &Draft,
-    grid: &SegmentGrid,
+    near_ends: &SegmentsNearEnds,
     ends: &Ends,
     paper: &Paper,
 ) -> Vec<Joint> {
@@ -99,10 +100,10 @@ fn joints_at(
     let badness = |length: f64, cos: f64| length + TURN_MM * paper.mm * (1.0 - cos);
     let mut joints: Vec<Joint> = Vec::new();
     let points = draft.points();
-    grid.near(at, at, paper.pen, |segment| {
-        let other = grid.stroke(segment);
+    for &segment in near_ends.of(end) {
+        let other = near_ends.stroke(segment);
         if !ends.has(other) {
-            return;
+            continue;
         }
         // Two ends, found from the one with the smaller number.
         for (side, point) in [(0, segment), (1, segment + 1)] {
@@ -118,14 +119,14 @@ fn joints_at(
             }
         }
         if other == end / 2 {
-            return;
+            continue;
         }
         let (from, to) = (points[segment as usize].at, points[segment as usize + 1].at);
         let along = to - from;
         let t = ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
         let foot = from.lerp(to, t);
         if at.distance(foot) > ON_STROKE_MM * paper.mm {
-            return;
+            continue;
         }
         let before = ends.along(segment) + t * along.length();
         let whole = ends.length(other);
@@ -144,7 +145,7 @@ fn joints_at(
                 joints.push(Joint { badness, has_stub: true, ends, stub, gap: at.distance(foot) });
             }
         }
-    });
+    }
     joints
 }
 

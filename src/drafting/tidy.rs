@@ -22,7 +22,8 @@ use super::Paper;
 use super::background::LazyBackground;
 use super::edits::{Edits, Ends, Tidied};
 use super::inked::Inked;
-use super::near::{Parts, ROUNDING, SegmentGrid, part_within};
+use super::near::{Parts, ROUNDING, part_within};
+use super::near_ends::SegmentsNearEnds;
 use super::stitch::stitch;
 
 /// Most rounds of stitching: what was joined may be joined again.
@@ -93,8 +94,9 @@ fn join_ends(inked: &mut Inked, tidied: &mut Tidied) {
 
 /// Joins two ends within a pen's width of each other, whatever the turn, if no third one is there.
 fn corners(inked: &mut Inked, tidied: &mut Tidied) {
-    let (draft, paper, grid) = (inked.draft(), inked.paper(), inked.grid());
+    let (draft, paper) = (inked.draft(), inked.paper());
     let ends = Ends::new(draft);
+    let near_ends = inked.near_ends(&ends);
     let n_ends = 2 * draft.len() as u32;
     // The only other end near each, if there is one.
     let only: Vec<Option<u32>> = (0..n_ends)
@@ -105,7 +107,7 @@ fn corners(inked: &mut Inked, tidied: &mut Tidied) {
                 return None;
             }
             let (mut found, mut is_only) = (None, true);
-            for_each_end_near(end, draft, grid, &ends, paper.pen, |other| {
+            for_each_end_near(end, draft, near_ends, &ends, paper.pen, |other| {
                 is_only &= found.is_none_or(|known| known == other);
                 found = Some(other);
             });
@@ -137,14 +139,14 @@ fn corners(inked: &mut Inked, tidied: &mut Tidied) {
 fn for_each_end_near(
     end: u32,
     draft: &Draft,
-    grid: &SegmentGrid,
+    near_ends: &SegmentsNearEnds,
     ends: &Ends,
     reach: f64,
     mut f: impl FnMut(u32),
 ) {
     let at = ends.at(end);
-    grid.near(at, at, reach, |segment| {
-        let stroke = grid.stroke(segment);
+    for &segment in near_ends.of(end) {
+        let stroke = near_ends.stroke(segment);
         for (side, point) in [(0, segment), (1, segment + 1)] {
             let other = 2 * stroke + side;
             if other != end
@@ -155,23 +157,27 @@ fn for_each_end_near(
                 f(other);
             }
         }
-    });
+    }
 }
 
 /// Leaves out short strokes all of which lies within a pen's width of longer ones.
 fn shadows(inked: &mut Inked, tidied: &mut Tidied) {
-    let (draft, paper, grid) = (inked.draft(), inked.paper(), inked.grid());
+    let (draft, paper) = (inked.draft(), inked.paper());
     let lengths: Vec<f64> = draft.iter().map(length).collect();
-    let points = draft.points();
+    let is_short = |stroke: usize| {
+        lengths[stroke] < MOST_CURLED * paper.figure && extent(draft.stroke(stroke)) < paper.figure
+    };
+    if !(0..draft.len()).any(is_short) {
+        return;
+    }
+    let (points, grid) = (draft.points(), inked.grid());
     let is_longer = |other: u32, stroke: usize| {
         let key = |stroke: usize| (lengths[stroke], std::cmp::Reverse(stroke));
         key(other as usize) > key(stroke)
     };
     let is_shadow = |stroke: usize, parts: &mut Parts| {
-        let is_short = lengths[stroke] < MOST_CURLED * paper.figure
-            && extent(draft.stroke(stroke)) < paper.figure;
         let range = draft.range(stroke);
-        is_short
+        is_short(stroke)
             && (range.start..range.end - 1).all(|i| {
                 let segment = [points[i].at, points[i + 1].at];
                 parts.clear();
@@ -210,7 +216,8 @@ fn specks_and_spurs(
         return;
     }
     let background = background.map(|background| background.get());
-    let (grid, ends) = (inked.grid(), Ends::new(draft));
+    let ends = Ends::new(draft);
+    let near_ends = inked.near_ends(&ends);
     // Strokes near each end; they may repeat.
     let near: Vec<Vec<u32>> = (0..2 * draft.len() as u32)
         .into_par_iter()
@@ -219,19 +226,26 @@ fn specks_and_spurs(
             let mut near = Vec::new();
             if ends.has(end / 2) {
                 let at = ends.at(end);
-                grid.near(at, at, paper.pen, |segment| {
-                    let other = grid.stroke(segment);
+                for &segment in near_ends.of(end) {
+                    let other = near_ends.stroke(segment);
                     let ends = [segment, segment + 1].map(|k| draft.points()[k as usize].at);
                     let is_new = other != end / 2 && near.last() != Some(&other);
                     if is_new && part_within([at, at], ends, paper.pen).is_some() {
                         near.push(other);
                     }
-                });
+                }
             }
             near
         })
         .collect();
     let mut figures = DisjointSets::new(draft.len());
+    let mut is_loose: Vec<bool> = near.iter().map(Vec::is_empty).collect();
+    for crowd in near_ends.crowds() {
+        for &end in crowd {
+            is_loose[end as usize] = false;
+            figures.unite(crowd[0] / 2, end / 2);
+        }
+    }
     for (end, near) in near.iter().enumerate() {
         for &other in near {
             figures.unite(end as u32 / 2, other);
@@ -262,8 +276,8 @@ fn specks_and_spurs(
         let figure = figures.of(stroke as u32) as usize;
         let (low, high) = boxes[figure];
         let is_speck = low.distance(high) < paper.figure && !figure_holds[figure];
-        let is_loose = |side: usize| near[2 * stroke + side].is_empty();
-        let is_spur = !holds[stroke] && ends.has(stroke as u32) && (is_loose(0) || is_loose(1));
+        let is_loose = is_loose[2 * stroke] || is_loose[2 * stroke + 1];
+        let is_spur = !holds[stroke] && ends.has(stroke as u32) && is_loose;
         is_speck || is_spur
     };
     let left_out: Vec<bool> = (0..draft.len()).map(&mut is_left_out).collect();

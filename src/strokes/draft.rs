@@ -88,6 +88,13 @@ impl Draft {
         &self.points[self.range(stroke)]
     }
 
+    /// For each point the stroke that it belongs to.
+    #[must_use]
+    pub fn strokes_of_points(&self) -> Vec<u32> {
+        let of_stroke = |stroke| std::iter::repeat_n(stroke as u32, self.range(stroke).len());
+        (0..self.len()).flat_map(of_stroke).collect()
+    }
+
     /// The strokes in order.
     pub fn iter(&self) -> impl Iterator<Item = &[DraftPoint]> + Clone {
         (0..self.len()).map(|stroke| self.stroke(stroke))

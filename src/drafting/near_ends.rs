@@ -1,0 +1,137 @@
+//! Which ink is near the ends of strokes.
+
+use rayon::prelude::*;
+
+use crate::strokes::draft::Draft;
+
+use super::Paper;
+use super::cells::{Cells, MAX_CELLS};
+use super::edits::Ends;
+use super::near::part_within;
+
+/// Ends are searched this much farther than asked, as a fraction, for rounding.
+const REACH_SLACK: f64 = 1e-9;
+
+/// Where more ends than this share a cell, none goes on into another: what is near which of them is not
+/// even looked for, since that may be all pairs of the lines of a drawing.
+const MAX_ENDS: usize = 128;
+
+/// For each end of a stroke that is not closed the segments near it.
+pub(super) struct SegmentsNearEnds {
+    starts: Vec<u32>,
+    segments: Vec<u32>,
+    /// The stroke of each point.
+    strokes: Vec<u32>,
+    /// Groups of ends that crowd each other.
+    crowds: Vec<Vec<u32>>,
+}
+
+impl SegmentsNearEnds {
+    /// Finds the segments within `reach` of each end.
+    ///
+    /// The ends are sorted into cells, and the segments walk through them: there are fewer ends than
+    /// segments. O(segments + pairs), in parallel but for the ends.
+    pub(super) fn new(draft: &Draft, ends: &Ends, paper: &Paper, reach: f64) -> Self {
+        let reach = reach * (1.0 + REACH_SLACK);
+        let cells = Cells::new(paper.bounds, reach, MAX_CELLS);
+        let by_cell = EndsByCell::new(draft, ends, &cells);
+        let points = draft.points();
+        let strokes = draft.strokes_of_points();
+        let pairs_of = |pairs: &mut Vec<(u32, u32)>, i: usize| {
+            if i + 1 == points.len() || strokes[i] != strokes[i + 1] {
+                return;
+            }
+            let segment = [points[i].at, points[i + 1].at];
+            cells.near(segment[0], segment[1], reach, |c| {
+                for &end in by_cell.of(c) {
+                    let at = ends.at(end);
+                    if part_within([at, at], segment, reach).is_some() {
+                        pairs.push((end, i as u32));
+                    }
+                }
+            });
+        };
+        let found: Vec<Vec<(u32, u32)>> = (0..points.len())
+            .into_par_iter()
+            .with_min_len(1024)
+            .fold(Vec::new, |mut pairs, i| {
+                pairs_of(&mut pairs, i);
+                pairs
+            })
+            .collect();
+        let mut pairs = found.concat();
+        pairs.par_sort_unstable();
+        pairs.dedup();
+        let mut starts = vec![0; 2 * draft.len() + 1];
+        pairs.iter().for_each(|&(end, _)| starts[end as usize + 1] += 1);
+        for end in 1..starts.len() {
+            starts[end] += starts[end - 1];
+        }
+        let segments = pairs.into_iter().map(|(_, segment)| segment).collect();
+        Self { starts, segments, strokes, crowds: by_cell.crowds }
+    }
+
+    /// The segments near an end, each by the number of its first point, in order. The end's own is one
+    /// of them.
+    pub(super) fn of(&self, end: u32) -> &[u32] {
+        let end = end as usize;
+        &self.segments[self.starts[end] as usize..self.starts[end + 1] as usize]
+    }
+
+    /// Groups of ends that are so many in one place that nothing is said of what is near them.
+    pub(super) fn crowds(&self) -> &[Vec<u32>] {
+        &self.crowds
+    }
+
+    /// The stroke that a point belongs to.
+    pub(super) fn stroke(&self, point: u32) -> u32 {
+        self.strokes[point as usize]
+    }
+}
+
+/// The ends of strokes by cells.
+struct EndsByCell {
+    is_used: Vec<u64>,
+    starts: Vec<u32>,
+    ends: Vec<u32>,
+    crowds: Vec<Vec<u32>>,
+}
+
+impl EndsByCell {
+    fn new(draft: &Draft, ends: &Ends, cells: &Cells) -> Self {
+        let mut sorted: Vec<(u32, u32)> = Vec::new();
+        for end in (0..2 * draft.len() as u32).filter(|end| ends.has(end / 2)) {
+            let at = ends.at(end);
+            cells.near(at, at, 0.0, |c| sorted.push((c as u32, end)));
+        }
+        sorted.par_sort_unstable();
+        let mut by_cell = Self {
+            is_used: vec![0; cells.len().div_ceil(64)],
+            starts: vec![0; cells.len() + 1],
+            ends: Vec::with_capacity(sorted.len()),
+            crowds: Vec::new(),
+        };
+        for of_cell in sorted.chunk_by(|a, b| a.0 == b.0) {
+            let c = of_cell[0].0 as usize;
+            let ends = of_cell.iter().map(|&(_, end)| end);
+            if of_cell.len() > MAX_ENDS {
+                by_cell.crowds.push(ends.collect());
+            } else {
+                by_cell.is_used[c / 64] |= 1 << (c % 64);
+                by_cell.starts[c + 1] = of_cell.len() as u32;
+                by_cell.ends.extend(ends);
+            }
+        }
+        for c in 1..by_cell.starts.len() {
+            by_cell.starts[c] += by_cell.starts[c - 1];
+        }
+        by_cell
+    }
+
+    fn of(&self, c: usize) -> &[u32] {
+        if self.is_used[c / 64] & 1 << (c % 64) == 0 {
+            return &[];
+        }
+        &self.ends[self.starts[c] as usize..self.starts[c + 1] as usize]
+    }
+}
