@@ -231,9 +231,7 @@ pub use classify::LineSelection;
 pub use draw::DrawOptions;
 pub use engines::edge::LineEngine;
 pub use engines::face::FaceEngine;
-pub use hatch::{
-    Ground, HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows,
-};
+pub use hatch::{Ground, HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows};
 pub use shading::fill::{FillOptions, Palette};
 pub use shading::light::LightSource;
 pub use strokes::{HiddenLines, Stroke, StrokeKind, Strokes};

@@ -8,7 +8,9 @@ use super::Paper;
 use super::edits::Ends;
 use super::near::SegmentGrid;
 use super::near_ends::SegmentsNearEnds;
-use super::stitch::ON_STROKE_MM;
+
+/// An end this near to a stroke lies on it.
+pub(super) const ON_STROKE_MM: f64 = 0.02;
 
 /// A draft with its segments by place, for searches within a pen's width.
 ///

@@ -135,3 +135,84 @@ impl EndsByCell {
         &self.ends[self.starts[c] as usize..self.starts[c + 1] as usize]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, dvec2};
+
+    use super::*;
+    use crate::strokes::StrokeKind;
+    use crate::strokes::draft::{DraftPoint, Mark};
+
+    fn draft(strokes: &[Vec<DVec2>]) -> Draft {
+        let mark = Mark { kind: StrokeKind::Crease, only_outline: false, outline: false, qi: 0 };
+        let mut draft = Draft::default();
+        for points in strokes {
+            points.iter().for_each(|&at| draft.push(DraftPoint { at, depth: 0.0, mark }));
+            draft.end_stroke();
+        }
+        draft
+    }
+
+    fn found(strokes: &[Vec<DVec2>], size: f64, reach: f64) -> (Draft, SegmentsNearEnds) {
+        let bounds = (DVec2::ZERO, DVec2::splat(size));
+        let paper = Paper { mm: 1.0, pen: reach, figure: reach, bounds };
+        let draft = draft(strokes);
+        let near = SegmentsNearEnds::new(&draft, &Ends::new(&draft), &paper, reach);
+        (draft, near)
+    }
+
+    #[test]
+    fn what_is_near_an_end_is_what_all_distances_say() {
+        let mut state = 7_u64;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut n_near = 0;
+        for (size, reach) in [(1.0, 0.05), (100.0, 0.3), (10.0, 3.0)] {
+            let strokes: Vec<Vec<DVec2>> = (0..150)
+                .map(|k| {
+                    let step = if k % 3 == 0 { size } else { 0.05 * size };
+                    let mut at = dvec2(next(), next()) * size;
+                    let mut points = vec![at];
+                    for _ in 0..1 + k % 4 {
+                        at = (at + (dvec2(next(), next()) - 0.5) * step)
+                            .clamp(DVec2::ZERO, DVec2::splat(size));
+                        points.push(at);
+                    }
+                    points.extend((k % 5 == 0).then_some(points[0]));
+                    points
+                })
+                .collect();
+            let (draft, near) = found(&strokes, size, reach);
+            let (points, ends) = (draft.points(), Ends::new(&draft));
+            for end in 0..2 * draft.len() as u32 {
+                let at = ends.at(end);
+                let is_near = |&i: &u32| {
+                    let (a, b) = (points[i as usize].at, points[i as usize + 1].at);
+                    let t = ((at - a).dot(b - a) / a.distance_squared(b)).clamp(0.0, 1.0);
+                    ends.has(end / 2) && at.distance(a.lerp(b, t)) <= reach
+                };
+                let strokes = (0..draft.len()).map(|stroke| draft.range(stroke));
+                let segments = strokes.flat_map(|range| range.start as u32..range.end as u32 - 1);
+                let expected: Vec<u32> = segments.filter(is_near).collect();
+                assert_eq!(near.of(end), expected, "{size} {reach} {end}");
+                n_near += expected.len();
+            }
+            assert!(near.crowds().is_empty());
+        }
+        assert!(n_near > 2000, "{n_near}");
+    }
+
+    #[test]
+    fn where_thousands_of_lines_meet_pairs_are_not_counted() {
+        let center = dvec2(50.0, 50.0);
+        let ray = |k: u32| vec![center, center + 40.0 * DVec2::from_angle(f64::from(k) * 0.002)];
+        let rays: Vec<Vec<DVec2>> = (0..3000).map(ray).collect();
+        let (_, near) = found(&rays, 100.0, 0.3);
+        let crowd: Vec<u32> = near.crowds().concat();
+        assert!((0..3000).all(|k| crowd.contains(&(2 * k)) && near.of(2 * k).is_empty()));
+        assert!(near.of(1).contains(&0), "the outer ends are not crowded");
+    }
+}

@@ -19,7 +19,7 @@ use crate::strokes::draft::Draft;
 
 use super::Paper;
 use super::edits::{Edits, Ends, Tidied};
-use super::inked::Inked;
+use super::inked::{Inked, ON_STROKE_MM};
 use super::near_ends::SegmentsNearEnds;
 
 /// Strokes go on into each other when they turn less than this.
@@ -27,9 +27,6 @@ const MAX_TURN_DEG: f64 = 60.0;
 
 /// The direction at an end is that of the last stretch of this length.
 const DIRECTION_MM: f64 = 0.5;
-
-/// An end this near to a stroke lies on it.
-pub(super) const ON_STROKE_MM: f64 = 0.02;
 
 /// Stubs are no longer than this many pen widths, whatever is beside them.
 const SHORT_STUB: f64 = 2.0;

@@ -114,7 +114,7 @@ fn corners(inked: &mut Inked, tidied: &mut Tidied) {
             found.filter(|_| is_only)
         })
         .collect();
-    let mut edits = Edits::new(&draft);
+    let mut edits = Edits::new(draft);
     let mut n_joined = 0;
     for (end, other) in (0..n_ends).zip(&only) {
         if let Some(other) = other.filter(|&other| end < other && only[other as usize] == Some(end))

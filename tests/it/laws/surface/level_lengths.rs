@@ -129,7 +129,8 @@ fn area([a, b, c]: [DVec3; 3]) -> f64 {
 
 #[test]
 fn curves_of_functions_have_no_loose_ends_and_no_triangle_is_turned_over() {
-    for text in ["(x-0.3)^2 - (y+0.7)^2", "sin(x)*cos(y)", "sin(x*y)", "min(x, sin(y))", "x^3-3*x*y^2"]
+    for text in
+        ["(x-0.3)^2 - (y+0.7)^2", "sin(x)*cos(y)", "sin(x*y)", "min(x, sin(y))", "x^3-3*x*y^2"]
     {
         let formula = Formula::parse(text, Variables::Plane).expect("a formula");
         for n in [21, 40] {
