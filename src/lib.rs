@@ -215,7 +215,7 @@ pub use model::scene::Scene;
 pub use read::{ModelFormat, Warning};
 
 // A surface.
-pub use axes::Titles;
+pub use axes::{Axes, AxesStyle, BoxFront, TickRule, Titles, ZAxis};
 pub use draw::surface::{Levels, SurfaceEngine, SurfaceLines, SurfaceNote};
 pub use engines::surface::CellOrder;
 pub use surface::formula::Formula;

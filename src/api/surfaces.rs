@@ -120,8 +120,12 @@ impl SurfaceDrawing<'_> {
     /// The surface cannot be sampled or drawn as asked, the view makes no camera, or the drawing cannot
     /// be placed on the page.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
+        let mut lines = self.lines.clone();
+        if let Some(axes) = &mut lines.axes {
+            axes.pen_width_mm = self.plot.pen_width_mm;
+        }
         let SurfaceOutput { drawn, page, notes, .. } =
-            draw_surface(self.surface, &self.view, &self.lines, &page.into())?;
+            draw_surface(self.surface, &self.view, &lines, &page.into())?;
         Ok(Sheet::new(page.plot(&drawn.drawing, self.plot.clone())).with_notes(notes))
     }
 

@@ -1,191 +1,287 @@
-//! One axis: its line, its ticks with numbers, and its title, laid out so that no two texts touch.
+//! One axis: its line, its ticks with numbers, and its title.
+//!
+//! ```text
+//!    ──┬──────┬──────┬──         a tick leaves the box as if a grid line went on, if that is not too
+//!     ╱      ╱      ╱            slanted; numbers follow in its direction, and the title lies beyond
+//!   −5      0      5             all numbers
+//! ```
 
 use glam::{DVec2, DVec3};
 
-use super::font::text;
-use super::ticks::ticks;
+use super::text_block::TextBlock;
+use super::ticks::Ticks;
 use crate::camera::Camera;
 use crate::strokes::{StrokeKind, Strokes};
+use crate::surface::AxisScale;
 
-/// Length of ticks and gap beside text, as a fraction of the height of numbers.
-const SPACE: f64 = 0.6;
+/// Length of ticks, in millimeters on paper.
+const TICK_MM: f64 = 1.2;
 
-/// Minimum horizontal and vertical gap between two texts, as fractions of the height of numbers: wider
-/// than a blank, with room for descenders.
-const CLEARANCE: DVec2 = DVec2::new(1.0, 0.5);
+/// Length of ticks without numbers, in millimeters on paper.
+const MINOR_TICK_MM: f64 = 0.7;
 
-/// One axis, from `a` to `b` in model space.
-pub(super) struct Axis<'a> {
-    pub(super) axis: usize,
-    pub(super) a: DVec3,
-    pub(super) b: DVec3,
-    pub(super) factor: f64,
-    /// Center of the box in the image.
-    pub(super) center: DVec2,
-    /// Height of numbers in the image.
-    pub(super) height: f64,
-    pub(super) title: &'a str,
+/// Ticks without numbers are left out where two would be closer than this, in millimeters on paper.
+const CLOSEST_TICKS_MM: f64 = 1.0;
+
+/// The same for ticks between powers of ten: a decade must be longer than this.
+const SHORTEST_DECADE_MM: f64 = 8.0;
+
+/// Cosine of the greatest angle between ticks and the normal of their axis: 50°.
+const MOST_SLANTED: f64 = 0.642_787_609_686_539_3;
+
+/// An axis whose image is shorter than this has no numbers, in millimeters on paper.
+const SHORTEST_AXIS_MM: f64 = 8.0;
+
+/// Gap between a tick and its number, as a part of the height of numbers.
+const GAP: f64 = 0.6;
+
+/// Minimum gap between text and other text or ink, as a part of the height of numbers.
+pub(super) const CLEARANCE: f64 = 0.5;
+
+/// Minimum gap between two numbers of one axis, as a part of their height.
+const BETWEEN_NUMBERS: f64 = 1.0;
+
+/// How large things are in the image.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    /// Height of numbers.
+    pub(super) text: f64,
+    /// One millimeter on paper.
+    pub(super) mm: f64,
 }
 
-/// A line of text at its position.
-pub(super) struct Label {
-    line: String,
-    height: f64,
-    center: DVec2,
-    half_size: DVec2,
+/// An axis along an edge of the box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxisLine {
+    pub(super) axis: usize,
+    /// At the low and the high end of the drawn coordinate.
+    pub(super) ends: [DVec3; 2],
+    pub(super) scale: AxisScale,
+    /// The axis along which ticks run, and the coordinate of the box's other side there.
+    pub(super) across: Option<(usize, f64)>,
+    /// Whether ticks point into the box.
+    pub(super) inwards: bool,
+}
+
+/// A number with its tick.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LaidTick {
+    pub(super) foot: DVec2,
+    pub(super) tip: DVec2,
+    /// `None` if there is no room for it.
+    pub(super) number: Option<TextBlock>,
 }
 
 /// An axis laid out in the image.
-pub(super) struct Laid {
-    ends: [DVec2; 2],
-    /// Unit vector pointing away from the box.
-    out: DVec2,
-    /// Foot, tip and number of each tick; the number is `None` if there is no room for it.
-    ticks: Vec<(DVec2, DVec2, Option<Label>)>,
-    title: Option<Label>,
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LaidAxis {
+    pub(super) axis: usize,
+    pub(super) ends: [DVec2; 2],
+    /// Unit vector at right angles to the axis, away from the box.
+    pub(super) out: DVec2,
+    pub(super) ticks: Vec<LaidTick>,
+    pub(super) minors: Vec<[DVec2; 2]>,
+    /// The ticks that were chosen.
+    pub(super) chosen: Option<Ticks>,
+    pub(super) exponent: Option<TextBlock>,
+    pub(super) title: Option<TextBlock>,
 }
 
-impl Label {
-    /// A line of text whose box is `gap` away from `at` in the direction `out`.
-    fn beside(line: &str, height: f64, at: DVec2, out: DVec2, gap: f64) -> Self {
-        let (_, width) = text(line, height);
-        let half_size = DVec2::new(width, height) / 2.0;
-        let center = at + out * (gap + half_size.dot(out.abs()));
-        Self { line: line.to_owned(), height, center, half_size }
+impl AxisLine {
+    /// The point of the axis at a value.
+    fn at(&self, value: f64) -> DVec3 {
+        let mut p = self.ends[0];
+        p[self.axis] = self.scale.drawn(value);
+        p
     }
 
-    fn is_clear_of(&self, other: &Self, space: DVec2) -> bool {
-        let apart = (self.center - other.center).abs() - self.half_size - other.half_size;
-        apart.cmpge(space).any()
+    /// Length on paper in millimeters.
+    pub(super) fn length_mm(&self, camera: &Camera, sizes: &Sizes) -> f64 {
+        let [a, b] = self.ends.map(|p| camera.image(p));
+        a.distance(b) / sizes.mm
     }
 
-    /// The bounding box of its strokes.
-    #[cfg(test)]
-    pub(super) fn drawn_box(&self) -> (DVec2, DVec2) {
-        let mut drawing = Strokes::default();
-        self.draw(&mut drawing);
-        drawing.bounds().unwrap_or((self.center, self.center))
-    }
-
-    /// Draws the text, with its capitals centered vertically.
-    fn draw(&self, drawing: &mut Strokes) {
-        let (strokes, _) = text(&self.line, self.height);
-        let corner = self.center - self.half_size;
-        for stroke in strokes {
-            drawing.push(StrokeKind::Text, 0, stroke.into_iter().map(|p| corner + p));
-        }
-    }
-}
-
-impl Axis<'_> {
-    /// Places ticks and numbers so that no number touches another one, on this axis or on `others`. If
-    /// numbers of this axis would touch, it gets fewer ticks. A number that would touch one of another
-    /// axis is shifted a little along its own axis, or left out.
-    pub(super) fn lay(&self, camera: &Camera, others: &[Laid]) -> Option<Laid> {
-        let ends = [self.a, self.b].map(|p| camera.image(p));
+    /// Chooses the first of the proposals whose numbers do not touch and places it. A number that would
+    /// touch `taken` text or `ink` is shifted a little along its axis, or left out.
+    pub(super) fn lay(
+        &self,
+        camera: &Camera,
+        sizes: &Sizes,
+        center: DVec2,
+        proposals: &[Ticks],
+        (taken, ink): (&[TextBlock], &[Vec<DVec2>]),
+        every_second: bool,
+    ) -> Option<LaidAxis> {
+        let ends = self.ends.map(|p| camera.image(p));
         let along = (ends[1] - ends[0]).normalize_or_zero();
         if along == DVec2::ZERO {
             return None;
         }
         let middle = ends[0] / 2.0 + ends[1] / 2.0;
         let mut out = along.perp();
-        if out.dot(middle - self.center) < 0.0 {
+        if out.dot(middle - center) < 0.0 {
             out = -out;
         }
-        let clearance = CLEARANCE * self.height;
-        let mut placed = self.numbers(camera, out, 0);
-        let mut coarser = 0;
-        while !placed.windows(2).all(|pair| pair[0].2.is_clear_of(&pair[1].2, clearance)) {
-            coarser += 1;
-            let fewer = self.numbers(camera, out, coarser);
-            if fewer.is_empty() {
-                placed.truncate(1);
-            } else {
-                placed = fewer;
-            }
+        let mut laid = LaidAxis {
+            axis: self.axis,
+            ends,
+            out,
+            ticks: Vec::new(),
+            minors: Vec::new(),
+            chosen: None,
+            exponent: None,
+            title: None,
+        };
+        if self.length_mm(camera, sizes) < SHORTEST_AXIS_MM {
+            return Some(laid);
         }
-        let taken = || others.iter().flat_map(Laid::labels);
-        let mut laid = Laid { ends, out, ticks: Vec::with_capacity(placed.len()), title: None };
-        for (foot, tip, label) in placed {
-            let inwards = along * (middle - foot).dot(along).signum();
-            let half = label.half_size.dot(along.abs());
-            let moved = [0.0, 0.5, 1.0].into_iter().find_map(|part| {
-                let center = label.center + inwards * (part * half);
-                let Label { height, half_size, .. } = label;
-                let moved = Label { line: label.line.clone(), height, center, half_size };
-                let is_clear = |other: &Label| moved.is_clear_of(other, clearance);
-                (taken().all(is_clear) && laid.labels().all(is_clear)).then_some(moved)
+        let clear = BETWEEN_NUMBERS * sizes.text;
+        let is_legible = |ticks: &[LaidTick]| {
+            let numbers: Vec<&TextBlock> = ticks.iter().filter_map(|t| t.number.as_ref()).collect();
+            numbers.windows(2).all(|pair| pair[0].is_clear_of(&pair[1].corners(), clear))
+        };
+        let place = |ticks: &Ticks| {
+            let (at, numbered) =
+                (ticks.majors.iter().enumerate(), if every_second { 2 } else { 1 });
+            at.map(|(k, (value, number))| {
+                let number = (k % numbered == 0).then_some(&number[..]);
+                self.tick(camera, sizes, out, *value, number)
+            })
+            .collect::<Vec<LaidTick>>()
+        };
+        let placed = proposals.iter().map(|ticks| (ticks, place(ticks)));
+        let Some((chosen, placed)) = placed
+            .clone()
+            .find(|(_, placed)| is_legible(placed))
+            .or_else(|| placed.min_by_key(|(_, placed)| placed.len()))
+        else {
+            return Some(laid);
+        };
+        for tick in placed {
+            let number = tick.number.and_then(|number| {
+                let inwards = along * (middle - tick.foot).dot(along).signum();
+                let half = number.reach(along);
+                [0.0, 0.5, 1.0].into_iter().find_map(|part| {
+                    let mut moved = number.clone();
+                    moved.anchor += inwards * (part * half);
+                    let own = laid.ticks.iter().filter_map(|tick| tick.number.as_ref());
+                    is_clear(&moved, own.chain(taken), ink, sizes).then_some(moved)
+                })
             });
-            laid.ticks.push((foot, tip, moved));
+            laid.ticks.push(LaidTick { number, ..tick });
         }
+        laid.minors = self.minors(camera, sizes, out, chosen);
+        laid.chosen = Some(chosen.clone());
         Some(laid)
     }
 
-    /// Foot, tip and number of each tick.
-    fn numbers(&self, camera: &Camera, out: DVec2, coarser: u32) -> Vec<(DVec2, DVec2, Label)> {
-        let (from, to) = (self.a[self.axis] / self.factor, self.b[self.axis] / self.factor);
-        let at_tick = |(value, label): (f64, String)| {
-            let mut p = self.a;
-            p[self.axis] = value * self.factor;
-            let foot = camera.image(p);
-            let space = SPACE * self.height;
-            let tip = foot + out * space;
-            (foot, tip, Label::beside(&label, self.height, tip, out, space))
-        };
-        ticks(from.min(to), from.max(to), coarser).into_iter().map(at_tick).collect()
+    fn tick(
+        &self,
+        camera: &Camera,
+        sizes: &Sizes,
+        out: DVec2,
+        value: f64,
+        number: Option<&str>,
+    ) -> LaidTick {
+        let (foot, way) = self.way(camera, out, value);
+        let length = TICK_MM * sizes.mm;
+        let sign = if self.inwards { -1.0 } else { 1.0 };
+        let tip = foot + way * (length * sign);
+        let outside = if self.inwards { 0.0 } else { length };
+        let number = number.map(|number| {
+            let mut number = TextBlock::line(number, sizes.text);
+            let (steepness, gap) = (way.dot(out), GAP * sizes.text);
+            let away = (outside * steepness + gap + number.reach(-out)) / steepness;
+            number.anchor = foot + way * away;
+            number
+        });
+        LaidTick { foot, tip, number }
     }
 
-    /// The title, outside the numbers of this axis and clear of all other text.
-    pub(super) fn place_title(&self, k: usize, all: &[Laid]) -> Option<Label> {
-        let laid = all.get(k).filter(|_| !self.title.is_empty())?;
-        let space = SPACE * self.height;
-        let beyond = |label: &Label| space + 2.0 * label.half_size.dot(laid.out.abs());
-        let reach = laid.labels().map(beyond).fold(0.0, f64::max);
-        let middle = laid.ends[0] / 2.0 + laid.ends[1] / 2.0;
-        let at = middle + laid.out * (space + reach);
-        let mut title = Label::beside(self.title, 1.3 * self.height, at, laid.out, space);
-        let clearance = CLEARANCE * self.height;
-        let is_clear = |title: &Label| {
-            all.iter().flat_map(Laid::labels).all(|other| title.is_clear_of(other, clearance))
+    /// The foot of a tick, and the direction out of the box in which it runs.
+    fn way(&self, camera: &Camera, out: DVec2, value: f64) -> (DVec2, DVec2) {
+        let p = self.at(value);
+        let foot = camera.image(p);
+        let across = self.across.map(|(axis, other_side)| {
+            let mut opposite = p;
+            opposite[axis] = other_side;
+            (foot - camera.image(opposite)).normalize_or_zero()
+        });
+        (foot, across.filter(|way| way.dot(out) >= MOST_SLANTED).unwrap_or(out))
+    }
+
+    /// Ticks without numbers, if there is room for all of them.
+    fn minors(
+        &self,
+        camera: &Camera,
+        sizes: &Sizes,
+        out: DVec2,
+        chosen: &Ticks,
+    ) -> Vec<[DVec2; 2]> {
+        let foot = |value: f64| camera.image(self.at(value));
+        let closest = |values: &[f64]| {
+            let distances = values.windows(2).map(|pair| foot(pair[0]).distance(foot(pair[1])));
+            distances.fold(f64::INFINITY, f64::min) / sizes.mm
         };
-        for _ in 0..MOST_STEPS {
-            if is_clear(&title) {
-                break;
-            }
-            title.center += laid.out * (space / 2.0);
-        }
-        Some(title)
+        let majors: Vec<f64> = chosen.majors.iter().map(|(value, _)| *value).collect();
+        let has_room = if chosen.is_decades {
+            closest(&majors) >= SHORTEST_DECADE_MM
+        } else {
+            let mut all = [&majors[..], &chosen.minors].concat();
+            all.sort_by(f64::total_cmp);
+            closest(&all) >= CLOSEST_TICKS_MM
+        };
+        let length = MINOR_TICK_MM * sizes.mm * if self.inwards { -1.0 } else { 1.0 };
+        let minors = chosen.minors.iter().filter(|_| has_room).map(|&value| {
+            let (foot, way) = self.way(camera, out, value);
+            [foot, foot + way * length]
+        });
+        minors.collect()
     }
 }
 
-/// How many times at most a title moves farther out, by half the gap beside it each time.
-const MOST_STEPS: usize = 200;
-
-impl Laid {
-    /// Its numbers and its title.
-    pub(super) fn labels(&self) -> impl Iterator<Item = &Label> {
-        self.ticks.iter().filter_map(|(.., label)| label.as_ref()).chain(&self.title)
+impl LaidAxis {
+    /// Its numbers, the power of ten they share, and its title.
+    pub(super) fn texts(&self) -> impl Iterator<Item = &TextBlock> {
+        let numbers = self.ticks.iter().filter_map(|tick| tick.number.as_ref());
+        numbers.chain(&self.exponent).chain(&self.title)
     }
 
-    pub(super) fn set_title(&mut self, title: Option<Label>) {
-        self.title = title;
+    /// Its ticks as ink.
+    pub(super) fn ink(&self) -> impl Iterator<Item = Vec<DVec2>> {
+        let ticks = self.ticks.iter().map(|tick| vec![tick.foot, tick.tip]);
+        ticks.chain(self.minors.iter().map(|minor| minor.to_vec()))
+    }
+
+    /// How far numbers reach out from the axis.
+    pub(super) fn reach(&self) -> f64 {
+        let numbers = self.ticks.iter().filter_map(|tick| tick.number.as_ref());
+        let of =
+            |text: &TextBlock| (text.anchor - self.ends[0]).dot(self.out) + text.reach(self.out);
+        let tips = self.ticks.iter().map(|tick| (tick.tip - tick.foot).dot(self.out));
+        numbers.map(of).chain(tips).fold(0.0, f64::max)
     }
 
     pub(super) fn draw(&self, drawing: &mut Strokes) {
         drawing.push(StrokeKind::Axis, 0, self.ends);
-        for (foot, tip, label) in &self.ticks {
-            drawing.push(StrokeKind::Axis, 0, [*foot, *tip]);
-            if let Some(label) = label {
-                label.draw(drawing);
-            }
+        for tick in &self.ticks {
+            drawing.push(StrokeKind::Axis, 0, [tick.foot, tick.tip]);
         }
-        if let Some(title) = &self.title {
-            title.draw(drawing);
+        for minor in &self.minors {
+            drawing.push(StrokeKind::Axis, 0, *minor);
         }
+        self.texts().for_each(|text| text.draw(drawing));
     }
 }
 
-/// Draws a line of text centered at `at`.
-pub(super) fn write_centered(drawing: &mut Strokes, line: &str, height: f64, at: DVec2) {
-    Label::beside(line, height, at, DVec2::ZERO, 0.0).draw(drawing);
+/// Whether text is clear of other text and of ink.
+pub(super) fn is_clear<'a>(
+    text: &TextBlock,
+    mut texts: impl Iterator<Item = &'a TextBlock>,
+    ink: &[Vec<DVec2>],
+    sizes: &Sizes,
+) -> bool {
+    let clearance = CLEARANCE * sizes.text;
+    texts.all(|other| text.is_clear_of(&other.corners(), clearance))
+        && ink.iter().all(|ink| text.is_clear_of(ink, clearance))
 }

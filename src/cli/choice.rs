@@ -1,6 +1,7 @@
 //! Choices of the library on the command line: one parser for every enum with `ALL` and names.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use hiddenline::stages::axes::{BoxFront, ZAxis};
 use hiddenline::stages::camera::framing::{NamedView, ProjectionKind};
 use hiddenline::stages::draw::surface::SurfaceEngine;
 use hiddenline::stages::engines::edge::LineEngine;
@@ -53,6 +54,11 @@ choices! {
     Aspect {
         Box "Scaled to a box 0.4 times as high as the longer side of its base"
         Data "To the scale of x and y"
+    }
+    BoxFront {
+        Dashed "Dashed, 1 mm and 1 mm"
+        Solid "Solid"
+        None "Left out"
     }
     CellOrder {
         Rows "Row by row, away from the eye"
@@ -160,6 +166,10 @@ choices! {
         NegativeY "-y points up"
         NegativeZ "-z points up"
     }
+    ZAxis {
+        Left "Left of the surface"
+        Right "Right of the surface"
+    }
 }
 
 /// Takes the names of all values; help describes them, and messages suggest them.
@@ -213,6 +223,7 @@ mod tests {
     #[test]
     fn every_choice_is_parsed_by_its_name() {
         is_named::<Aspect>();
+        is_named::<BoxFront>();
         is_named::<CellOrder>();
         is_named::<Coloring>();
         is_named::<Crop>();
@@ -230,6 +241,7 @@ mod tests {
         is_named::<Subdivision>();
         is_named::<SurfaceEngine>();
         is_named::<UpAxis>();
+        is_named::<ZAxis>();
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `hiddenline surface`: from formulas, heights or points to a drawing's file.
 
 mod args;
+mod axes_args;
 mod input;
 mod input_args;
 #[cfg(feature = "view")]
@@ -122,6 +123,7 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
         SurfaceError::OneFamily => format!("{error}: give --lines x or --lines y"),
         SurfaceError::OneGrid => format!("{error}: give --engine roberts or auto"),
         SurfaceError::MaxMin | SurfaceError::NearPlane => format!("{error}: give --engine auto"),
+        SurfaceError::Frame => format!("{error}: give --view top or other --axes"),
         SurfaceError::Order => "--order needs one surface z = f(x, y) over a rectangle without \
                                 holes, drawn with grid lines only: leave --order out"
             .to_owned(),
@@ -134,6 +136,12 @@ fn noted(note: &SurfaceNote) -> String {
     match note {
         SurfaceNote::OffFunction { .. } => format!("{note}; more --samples draw it more closely"),
         SurfaceNote::NoLevels(none) => without_levels(none),
+        SurfaceNote::LittleRoom => {
+            format!(
+                "{note}; a larger --page, a smaller --text-height or shorter --axis-titles help"
+            )
+        }
+        SurfaceNote::TooManyTicks => format!("{note}; give a larger --tick-step"),
         _ => note.to_string(),
     }
 }

@@ -7,6 +7,7 @@
 //!                 └─ all else ─► mesh with lines ─► meshed::draw ───┴─► strokes, with axes
 //! ```
 
+mod around;
 mod error;
 mod grid;
 mod options;
@@ -17,11 +18,11 @@ use glam::{DVec2, DVec3};
 pub use self::error::{MAX_TRIANGLES, NoLevels, SurfaceError, SurfaceNote};
 pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLines};
 
+use self::around::surround;
 use self::grid::{draw_grid, grid_to_draw};
 use self::smoothness::{SmoothSurface, sample};
 use super::turning::{TurningLines, surface_turning_lines};
 use super::{DrawOutput, MeshSize, meshed};
-use crate::axes::{axes, missing};
 use crate::camera::framing::View;
 use crate::camera::{Camera, Projection};
 use crate::engines::edge::LineEngine;
@@ -132,13 +133,8 @@ pub fn draw_surface(
         Some(lined) => lined.scene.extent(&camera),
         None => surface.extent(&camera),
     };
-    let around = lines
-        .axes
-        .as_ref()
-        .map(|titles| axes(&extent, surface.bounds(), surface.z_factor(), &camera, titles));
-    let around = around.unwrap_or_default();
-    let extent = extent.union(around.extent(&camera));
-    let page = Page::place(&extent, &camera, page)?;
+    let (around, extent, page) = surround(&surface, extent, &camera, lines.axes.as_ref(), page)?;
+    notes.extend(around.notes.iter().cloned());
     let (mut drawn, size) = match (grid, &lined) {
         (Some(grid), _) => draw_grid(grid, &camera, lines, every)?,
         (None, Some(lined)) => {
@@ -154,21 +150,23 @@ pub fn draw_surface(
     drawn.seconds += seconds;
     let drawing = &mut drawn.drawing;
     let ink = Ink::of(drawing, lines, &page);
-    if let Some(titles) = lines.axes.as_ref().filter(|_| !drawing.is_empty()) {
-        drawing.append(&around);
-        let missing = missing(&[titles.axes.join(""), titles.drawing.clone()].concat());
-        if !missing.is_empty() {
-            notes.push(SurfaceNote::MissingLetters(missing));
+    let scene = match lined {
+        Some(lined) => Some(lined.scene),
+        None if lines.keep_scene || !around.layout.wires().is_empty() => {
+            Some(self::lined(&surface, lines, every)?.scene)
         }
+        None => None,
+    };
+    if !drawing.is_empty() {
+        drawing.append(&match &scene {
+            Some(scene) => around.with_wires(scene, &camera),
+            None => around.strokes,
+        });
     }
     let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
     let is_ordered = grid.is_some() && !is_edge_on && drawing.n_points() > FEW_POINTS;
     let samples = surface.to_string();
-    let scene = match lined {
-        _ if !lines.keep_scene => None,
-        Some(lined) => Some(lined.scene),
-        None => Some(self::lined(&surface, lines, every)?.scene),
-    };
+    let scene = scene.filter(|_| lines.keep_scene);
     Ok(SurfaceOutput { drawn, size, camera, page, extent, samples, notes, is_ordered, scene, ink })
 }
 
@@ -266,15 +264,14 @@ pub fn for_turning(
 ) -> Result<TurningSurface, SurfaceError> {
     let sampled = surface.sample(1)?;
     let lined = lined(&sampled, lines, lines.every)?;
-    Ok(TurningSurface { lined, bounds: sampled.bounds(), z_factor: sampled.z_factor() })
+    Ok(TurningSurface { lined, sampled })
 }
 
 /// A surface made ready to be turned.
 #[derive(Debug, Clone)]
 pub struct TurningSurface {
     lined: LinedScene,
-    bounds: (DVec3, DVec3),
-    z_factor: f64,
+    sampled: SampledSurface,
 }
 
 impl TurningSurface {
@@ -283,24 +280,24 @@ impl TurningSurface {
         &self.lined.scene
     }
 
-    /// The visible lines of a view, with the axes; the camera; and what they take up of the image.
+    /// The visible lines of a view, with the axes; the camera; and the page.
     ///
     /// # Errors
-    /// The view makes no camera.
+    /// The view makes no camera, or the drawing cannot be placed on the page.
     pub fn lines(
         &self,
         view: &View,
         lines: &SurfaceLines,
-    ) -> Result<(TurningLines, Camera, Extent), SurfaceError> {
-        let camera = view.camera(self.bounds)?;
+        page: &PageOptions,
+    ) -> Result<(TurningLines, Camera, Page), SurfaceError> {
+        let camera = view.camera(self.sampled.bounds())?;
         let mut visible = surface_turning_lines(&self.lined, &camera, &meshed_options(lines));
-        let mut extent = self.lined.scene.extent(&camera);
-        if let Some(titles) = &lines.axes {
-            let around = axes(&extent, self.bounds, self.z_factor, &camera, titles);
-            visible.push_pane(&around, &camera);
-            extent = extent.union(around.extent(&camera));
-        }
-        Ok((visible, camera, extent))
+        let scene = &self.lined.scene;
+        let extent = scene.extent(&camera);
+        let axes = lines.axes.as_ref();
+        let (around, _, page) = surround(&self.sampled, extent, &camera, axes, page)?;
+        visible.push_pane(&around.with_wires(scene, &camera), &camera);
+        Ok((visible, camera, page))
     }
 }
 

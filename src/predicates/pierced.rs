@@ -114,6 +114,12 @@ impl PiercePoint {
         Self { edge, triangle, other_edge, ..Self::rounding(exact) }
     }
 
+    /// A point by its coordinates, all finite.
+    pub fn at(point: DVec3) -> Self {
+        let x = super::exact::dyadic(point);
+        Self::rounding(Homogeneous { x, w: Dyadic::from(1.0) })
+    }
+
     /// A point on no edge and in no plane, as far as numbers of vertices tell.
     pub(super) fn rounding(exact: Homogeneous) -> Self {
         let high = DVec3::from_array(std::array::from_fn(|i| ratio(&exact.x[i], &exact.w)));

@@ -2,6 +2,7 @@
 
 pub mod formula;
 
+mod axis_scale;
 mod cells;
 mod crossings;
 mod domain;
@@ -17,6 +18,7 @@ mod sampled;
 mod source;
 mod split_cells;
 
+pub use axis_scale::AxisScale;
 pub use domain::TrimmedGrid;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
 pub use height_function::HeightFunction;

@@ -1,13 +1,13 @@
 //! What is typed after `hiddenline surface`, and what it means.
 
 use clap::{Args, ValueEnum};
-use hiddenline::stages::axes::Titles;
 use hiddenline::stages::draw::surface::{Levels, SurfaceEngine, SurfaceLines};
 use hiddenline::stages::engines::surface::CellOrder;
 use hiddenline::stages::surface::{Aspect, DEFAULT_SAMPLES};
 use hiddenline::stages::write::Format;
 
 use super::Job;
+use super::axes_args::AxesArgs;
 use super::input::SurfaceSource;
 use super::input_args::SurfaceInputArgs;
 use crate::cli::camera::CameraArgs;
@@ -55,7 +55,7 @@ pub(in crate::cli) struct SurfaceArgs {
     #[command(flatten)]
     light: LightArgs,
     #[command(flatten)]
-    dressing: DressingArgs,
+    axes: AxesArgs,
     #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
@@ -115,28 +115,6 @@ struct LineArgs {
     exact: bool,
 }
 
-#[derive(Args)]
-#[command(next_help_heading = "Axes")]
-struct DressingArgs {
-    /// Leave out axes and titles; implied by --exact
-    #[arg(long, conflicts_with_all = ["title", "axis_titles"])]
-    no_axes: bool,
-    /// Title above the drawing
-    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
-    title: Option<String>,
-    /// Titles of the axes; `s^{-1}` raises and `x_{0}` lowers letters
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_value = "x,y,z")]
-    axis_titles: Vec<String>,
-}
-
-impl DressingArgs {
-    fn titles(self) -> Result<Titles, String> {
-        let axes = self.axis_titles.try_into();
-        let axes = axes.map_err(|_| "give three titles of axes with commas between them")?;
-        Ok(Titles { axes, drawing: self.title.unwrap_or_default() })
-    }
-}
-
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum LineName {
     X,
@@ -165,7 +143,7 @@ impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(in crate::cli) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { surface, camera, lines, hatch, light, dressing, page, output } = self;
+        let Self { surface, camera, lines, hatch, light, axes, page, output } = self;
         let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
         let mut sheets = sheets.ok_or("give a formula")?;
@@ -232,7 +210,7 @@ impl SurfaceArgs {
         let hatch = hatch.options(light.source());
         let inputs = sheets.file().into_iter().chain(view.input()).chain(output.inputs.clone());
         check_place(output.path.as_deref(), inputs)?;
-        let titles = if dressing.no_axes || lines.exact { None } else { Some(dressing.titles()?) };
+        let axes = axes.axes(page.pen_width_mm())?.filter(|_| !lines.exact);
         let levels = lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS));
         let lines = SurfaceLines {
             along_x,
@@ -248,7 +226,7 @@ impl SurfaceArgs {
             exact: lines.exact,
             engine: lines.engine,
             order: lines.order,
-            axes: titles,
+            axes,
             keep_scene: hatch.is_some(),
             apart_by_kind: output.format == Format::Json,
             ..SurfaceLines::default()

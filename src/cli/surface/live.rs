@@ -4,7 +4,6 @@ use std::error::Error;
 
 use hiddenline::stages::draw::surface::{TurningSurface, for_turning};
 use hiddenline::stages::model::scene::Scene;
-use hiddenline::stages::page::Page;
 use hiddenline::stages::surface::Surface;
 use hiddenline::stages::timing::timed;
 
@@ -63,9 +62,8 @@ impl Job {
         }
         let Some((_, turning)) = &live.turning else { return Err("no surface".into()) };
         let view = self.view.framing()?;
-        let drawn = turning.lines(&view, &self.lines);
-        let (lines, camera, extent) = drawn.map_err(|error| failed(self, &error))?;
-        let sheet = Page::place(&extent, &camera, &self.page)?;
+        let drawn = turning.lines(&view, &self.lines, &self.page);
+        let (lines, camera, sheet) = drawn.map_err(|error| failed(self, &error))?;
         Ok(Turned { lines, camera, page: self.page, sheet, plot: plot_options(self) })
     }
 }

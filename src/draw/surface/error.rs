@@ -63,6 +63,9 @@ pub enum SurfaceError {
          grid lines only"
     )]
     Order,
+    /// A frame was asked for around a surface that is seen at an angle.
+    #[error("a frame needs a view from straight above or below, in parallel projection")]
+    Frame,
 }
 
 /// Why a surface has no level curves.
@@ -107,6 +110,15 @@ pub enum SurfaceNote {
     /// Letters of titles that the font does not have.
     #[error("the font has no {}: drawn as question marks", list(.0))]
     MissingLetters(Vec<char>),
+    /// Text takes up so much room that the drawing is small.
+    #[error("numbers and titles leave little room for the drawing on this page")]
+    LittleRoom,
+    /// Ticks at the steps asked for would be too many.
+    #[error("ticks at the given steps would be too many: an axis has others")]
+    TooManyTicks,
+    /// The box around the surface reaches in front of the near plane.
+    #[error("no axes are drawn, since the eye is too close to the box around the surface")]
+    NoAxes,
 }
 
 fn list(letters: &[char]) -> String {

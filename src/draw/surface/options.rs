@@ -1,6 +1,6 @@
 //! Which lines of a surface are drawn, and how.
 
-use crate::axes::Titles;
+use crate::axes::Axes;
 use crate::draw::DEFAULT_SHORTEST_STROKE_MM;
 use crate::engines::surface::CellOrder;
 
@@ -40,8 +40,8 @@ pub struct SurfaceLines {
     /// In which order [`max_min`](crate::engines::surface::max_min) visits the cells of a grid; the
     /// drawing is the same. `None` for the default order, or for surfaces that are not a single grid.
     pub order: Option<CellOrder>,
-    /// Titles of axes around the surface; `None` for no axes.
-    pub axes: Option<Titles>,
+    /// Axes around the surface; `None` for no axes.
+    pub axes: Option<Axes>,
     /// Keep the triangles between the samples, for hatching.
     pub keep_scene: bool,
     /// Join only pieces of one kind.
@@ -67,7 +67,7 @@ impl Default for SurfaceLines {
             exact: false,
             engine: SurfaceEngine::default(),
             order: None,
-            axes: Some(Titles::default()),
+            axes: Some(Axes::default()),
             keep_scene: false,
             apart_by_kind: false,
             shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
@@ -137,10 +137,17 @@ impl SurfaceLines {
         Self { axes: None, ..self }
     }
 
-    /// Axes with these titles; an empty title is left out.
+    /// Axes, or the usual ones with these titles.
+    ///
+    /// ```
+    /// use hiddenline::{Axes, AxesStyle, SurfaceLines, Titles};
+    ///
+    /// let titled = SurfaceLines::default().axes(Titles::of_drawing("Peaks"));
+    /// let walls = SurfaceLines::default().axes(Axes::new(AxesStyle::Back));
+    /// ```
     #[must_use]
-    pub fn axes(self, titles: Titles) -> Self {
-        Self { axes: Some(titles), ..self }
+    pub fn axes(self, axes: impl Into<Axes>) -> Self {
+        Self { axes: Some(axes.into()), ..self }
     }
 
     /// The visible-line algorithm; all give the same lines.

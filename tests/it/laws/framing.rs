@@ -1,11 +1,13 @@
 //! Named views and axes against closed forms.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use hiddenline::stages::axes::{Titles, axes, text};
+use hiddenline::stages::axes::{
+    Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, Titles, text,
+};
 use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
 use hiddenline::stages::camera::{Camera, Projection};
-use hiddenline::stages::extent::Extent;
 use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::surface::AxisScale;
 
 const CUBE: (DVec3, DVec3) = (DVec3::NEG_ONE, DVec3::ONE);
 
@@ -30,14 +32,21 @@ fn named_views_shorten_the_axes_as_the_textbooks_say() {
     }
 }
 
-/// The lines and ticks of the axes around a box, and how many strokes its lettering has.
+/// The lines and ticks of the axes around a box, and how many strokes its lettering has. Numbers are 1.4
+/// units of the image high.
 fn lines_and_text(
-    bounds: (DVec3, DVec3),
+    (low, high): (DVec3, DVec3),
     factor: f64,
     camera: &Camera,
 ) -> (Vec<[DVec2; 2]>, usize) {
     let titles = Titles { axes: Default::default(), drawing: String::new() };
-    let drawing = axes(&Extent::EMPTY, bounds, factor, camera, &titles);
+    let scales = [1.0, 1.0, factor].map(AxisScale::linear);
+    let ranges = [0, 1, 2].map(|k| (scales[k].value(low[k]), scales[k].value(high[k])));
+    let around = AxesBox { low, high, scales, ranges, z_may_grow: false };
+    let axes = Axes::new(AxesStyle::Edges).titles(titles);
+    let size = AxesSize { text_mm: 1.4, mm_per_unit: 1.0, economy: Economy::None };
+    let layout = AxesLayout::new(&around, camera, &axes, &size).expect("a layout");
+    let drawing = layout.strokes();
     let of = |kind| drawing.iter().filter(move |stroke| stroke.kind == kind);
     let lines = of(StrokeKind::Axis).map(|stroke| [stroke.points[0], stroke.points[1]]).collect();
     (lines, of(StrokeKind::Text).count())
@@ -98,17 +107,21 @@ fn numbers_on_the_z_axis_are_heights_before_scaling() {
         Projection::Orthographic,
     )
     .expect("a camera");
+    // Ticks with numbers are longer than the others.
+    let feet = |lines: &[[DVec2; 2]]| {
+        let ticks = lines[1..].iter().filter(|[foot, tip]| foot.distance(*tip) > 1.0);
+        let mut feet: Vec<f64> = ticks.map(|tick| tick[0].y + 14.0).collect();
+        feet.sort_by(f64::total_cmp);
+        feet
+    };
     let (lines, n_text) = lines_and_text(bounds, 7.0, &camera);
-    let mut feet: Vec<f64> = lines[1..].iter().map(|tick| tick[0].y + 14.0).collect();
-    feet.sort_by(f64::total_cmp);
+    let found = feet(&lines);
     let expected = [0.0, 7.0, 14.0, 21.0, 28.0];
-    assert_eq!(feet.len(), expected.len(), "{feet:?}");
-    assert!(feet.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{feet:?}");
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
     let strokes = |label: &str| text(label, 1.0).0.len();
     assert_eq!(n_text, ["0", "1", "2", "3", "4"].map(strokes).iter().sum::<usize>());
-    let (lines, _) = lines_and_text(bounds, 1.0, &camera);
-    let mut feet: Vec<f64> = lines[1..].iter().map(|tick| tick[0].y + 14.0).collect();
-    feet.sort_by(f64::total_cmp);
-    assert!((feet[1] - 10.0).abs() < 1e-9, "{feet:?}");
-    assert!(dvec2(feet[0], 0.0).length() < 1e-9);
+    let found = feet(&lines_and_text(bounds, 1.0, &camera).0);
+    assert!((found[1] - 5.0).abs() < 1e-9, "{found:?}");
+    assert!(dvec2(found[0], 0.0).length() < 1e-9);
 }

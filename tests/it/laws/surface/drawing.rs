@@ -246,7 +246,7 @@ fn what_is_odd_about_a_drawing_is_noted() {
     let axes = |name: &str| {
         let titles = ["x", "y", name].map(str::to_owned);
         let titles = hiddenline::stages::axes::Titles { axes: titles, drawing: String::new() };
-        SurfaceLines { axes: Some(titles), ..bare() }
+        SurfaceLines { axes: Some(titles.into()), ..bare() }
     };
     let plane = of("x").samples(3, 3);
     assert_eq!(drawn(&plane, NamedView::Isometric, &axes("z")).notes, []);

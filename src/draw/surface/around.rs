@@ -1,0 +1,173 @@
+//! Axes around a surface, and the page that both fit on.
+//!
+//! ```text
+//!   scale of the page ─► size of text in the image ─► layout ─► what all takes up ─┐
+//!          ▲                                                                       │
+//!          └───────────────────────────────────────────────────────────────────────┘
+//! ```
+//!
+//! Text is a few millimeters high whatever the scale, so that each layout is as large as the page that it
+//! was made for would have it; a few rounds settle that.
+
+use glam::{DVec2, DVec3};
+
+use super::error::{SurfaceError, SurfaceNote};
+use crate::axes::{
+    Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, is_straight_down, missing,
+};
+use crate::camera::Camera;
+use crate::classify::{LineSelection, ViewSegments, ViewedScene};
+use crate::engines::edge::{VisibilityOptions, roberts};
+use crate::extent::Extent;
+use crate::model::scene::Scene;
+use crate::page::{Page, PageOptions, Placement};
+use crate::predicates::PiercePoint;
+use crate::strokes::Strokes;
+use crate::surface::{AxisScale, SampledSurface};
+
+/// Height of numbers as a part of the page's diagonal.
+const TEXT_HEIGHT: f64 = 0.01;
+
+/// Least and greatest height of numbers, in millimeters.
+const TEXT_HEIGHTS_MM: (f64, f64) = (1.8, 3.5);
+
+/// Least height of numbers as a multiple of the pen's width.
+const PEN_WIDTHS: f64 = 6.0;
+
+/// Text is made to take up less room if the drawing is smaller than this part of what it would be
+/// without any.
+const LEAST_PART: f64 = 0.75;
+
+/// How often a layout is repeated at most.
+const MOST_ROUNDS: usize = 5;
+
+/// Rounds end when the scale changes by less than this part.
+const SETTLED: f64 = 1e-3;
+
+/// What is around a surface.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Around {
+    pub(super) layout: AxesLayout,
+    pub(super) strokes: Strokes,
+    pub(super) notes: Vec<SurfaceNote>,
+}
+
+/// Lays axes out around a surface, and places both on the page. `extent` is what the surface takes up of
+/// the image.
+pub(super) fn surround(
+    surface: &SampledSurface,
+    extent: Extent,
+    camera: &Camera,
+    axes: Option<&Axes>,
+    options: &PageOptions,
+) -> Result<(Around, Extent, Page), SurfaceError> {
+    let mut around = Around::default();
+    let bare = Page::place(&extent, camera, options)?;
+    let Some(axes) = axes else { return Ok((around, extent, bare)) };
+    if axes.style == Some(AxesStyle::Frame) && !is_straight_down(camera) {
+        return Err(SurfaceError::Frame);
+    }
+    let bounds = axes_box(surface);
+    let text_mm = axes.text_height_mm.unwrap_or_else(|| text_height_mm(&bare, axes.pen_width_mm));
+    let mut placed = None;
+    for economy in Economy::ALL {
+        let size = AxesSize { text_mm, mm_per_unit: bare.mm_per_image_unit(), economy };
+        let Some((layout, page)) = settled(&bounds, extent, camera, axes, options, size)? else {
+            around.notes.push(SurfaceNote::NoAxes);
+            return Ok((around, extent, bare));
+        };
+        let bare = Page::place(&extent.union(box_extent(&layout, camera)), camera, options)?;
+        let part = page.mm_per_image_unit() / bare.mm_per_image_unit();
+        let is_large = options.placement != Placement::Fit || part >= LEAST_PART;
+        placed = Some((layout, page, is_large));
+        if is_large {
+            break;
+        }
+    }
+    let Some((layout, page, is_large)) = placed else { return Ok((around, extent, bare)) };
+    if !is_large {
+        around.notes.push(SurfaceNote::LittleRoom);
+    }
+    if layout.has_too_many_ticks() {
+        around.notes.push(SurfaceNote::TooManyTicks);
+    }
+    let missing = missing(&[axes.titles.axes.join(""), axes.titles.drawing.clone()].concat());
+    if !missing.is_empty() {
+        around.notes.push(SurfaceNote::MissingLetters(missing));
+    }
+    around.strokes = layout.strokes();
+    let extent = extent.union(box_extent(&layout, camera)).union(around.strokes.extent(camera));
+    around.layout = layout;
+    Ok((around, extent, page))
+}
+
+/// A layout made for the scale that the page then has.
+fn settled(
+    bounds: &AxesBox,
+    extent: Extent,
+    camera: &Camera,
+    axes: &Axes,
+    options: &PageOptions,
+    mut size: AxesSize,
+) -> Result<Option<(AxesLayout, Page)>, SurfaceError> {
+    let mut found = None;
+    for _ in 0..MOST_ROUNDS {
+        let Some(layout) = AxesLayout::new(bounds, camera, axes, &size) else { return Ok(None) };
+        let all = extent.union(box_extent(&layout, camera)).union(layout.strokes().extent(camera));
+        let page = Page::place(&all, camera, options)?;
+        let scale = page.mm_per_image_unit();
+        let change = (scale / size.mm_per_unit - 1.0).abs();
+        found = Some((layout, page));
+        if change < SETTLED {
+            break;
+        }
+        size.mm_per_unit = scale;
+    }
+    Ok(found)
+}
+
+fn box_extent(layout: &AxesLayout, camera: &Camera) -> Extent {
+    Extent::of_polylines(std::iter::once(layout.box_in_image()), camera)
+}
+
+fn text_height_mm(page: &Page, pen_width_mm: f64) -> f64 {
+    let diagonal = DVec2::new(page.paper.width_mm, page.paper.height_mm).length();
+    let (least, most) = TEXT_HEIGHTS_MM;
+    (TEXT_HEIGHT * diagonal).clamp(least, most).max(PEN_WIDTHS * pen_width_mm)
+}
+
+/// The box around a surface with the values on its axes.
+fn axes_box(surface: &SampledSurface) -> AxesBox {
+    let (low, high) = surface.bounds();
+    let z = AxisScale::linear(surface.z_factor());
+    let scales = [AxisScale::DATA, AxisScale::DATA, z];
+    let ranges = [0, 1, 2].map(|k| {
+        let (a, b) = (scales[k].value(low[k]), scales[k].value(high[k]));
+        (a.min(b) + 0.0, a.max(b) + 0.0)
+    });
+    AxesBox { low, high, scales, ranges, z_may_grow: true }
+}
+
+impl Around {
+    /// The axes, with those parts of the lines behind the surface that `scene` does not hide.
+    pub(super) fn with_wires(mut self, scene: &Scene, camera: &Camera) -> Strokes {
+        let wires = self.layout.wires();
+        let mut segments = ViewSegments::new(scene);
+        for wire in wires {
+            let ends = wire.ends.map(|p| segments.push_point(PiercePoint::at(p)));
+            segments.push(ends, wire.kind);
+        }
+        let none = LineSelection::NONE;
+        let view = ViewedScene::with_segments(scene, camera, none, 180.0, &segments);
+        let (visibility, _) = roberts::solve(&view, &VisibilityOptions::EXACT);
+        let first = scene.n_lines() as u32;
+        for (number, drawn) in view.selected().iter().enumerate() {
+            let wire = &wires[(drawn.edge - first) as usize];
+            let at = |t: f64| camera.image(DVec3::lerp(wire.ends[0], wire.ends[1], t));
+            for span in visibility.spans(number).iter().filter(|span| span.qi == 0) {
+                self.strokes.push(wire.kind, 0, [at(span.t0), at(span.t1)]);
+            }
+        }
+        self.strokes
+    }
+}
