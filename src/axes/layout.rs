@@ -126,7 +126,7 @@ impl AxesLayout {
         let style = axes.style.unwrap_or(if is_map { AxesStyle::Frame } else { AxesStyle::Edges });
         let economy = size.economy;
         let mut bbox = BoundingBox { low: around.low, high: around.high, camera };
-        if !is_seen(&bbox) || !(sizes.text > 0.0 && sizes.text.is_finite()) {
+        if !(is_seen(&bbox) && sizes.text > 0.0 && sizes.text.is_finite()) {
             return None;
         }
         let mut chosen: Option<Ticks> = None;
