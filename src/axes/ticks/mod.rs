@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(of(0.0, 40.0 * PI), "0 10π 20π 30π 40π");
         // Too short for any.
         assert_eq!(of(0.1, 0.5), labels(0.1, 0.5));
-        let range = AxisRange { may_grow: true, ..range(-3.14, 3.13) };
+        let range = AxisRange { may_grow: true, ..range(-3.13, 3.12) };
         assert_eq!(best(&range, TickRule::Pi).1.range, (-PI, PI));
     }
 
