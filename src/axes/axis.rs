@@ -41,6 +41,19 @@ pub(super) const CLEARANCE: f64 = 0.5;
 /// Minimum gap between two numbers of one axis, as a part of their height.
 const BETWEEN_NUMBERS: f64 = 1.0;
 
+/// Places that are tried for a number, relative to the usual one: along the axis by parts of half its
+/// width, and away from it by parts of its height.
+const SHIFTS: [(f64, f64); 8] = [
+    (0.0, 0.0),
+    (0.5, 0.0),
+    (1.0, 0.0),
+    (0.0, 0.7),
+    (0.5, 0.7),
+    (1.0, 0.7),
+    (0.0, 1.4),
+    (1.0, 1.4),
+];
+
 /// How large things are in the image.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes {
@@ -161,9 +174,11 @@ impl AxisLine {
             let number = tick.number.and_then(|number| {
                 let inwards = along * (middle - tick.foot).dot(along).signum();
                 let half = number.reach(along);
-                [0.0, 0.5, 1.0].into_iter().find_map(|part| {
+                let way = (tick.tip - tick.foot).normalize_or_zero();
+                let away = if self.inwards { -way } else { way } * sizes.text;
+                SHIFTS.into_iter().find_map(|(along, out)| {
                     let mut moved = number.clone();
-                    moved.anchor += inwards * (part * half);
+                    moved.anchor += inwards * (along * half) + away * out;
                     let own = laid.ticks.iter().filter_map(|tick| tick.number.as_ref());
                     is_clear(&moved, own.chain(taken), ink, sizes).then_some(moved)
                 })

@@ -41,11 +41,11 @@ pub(super) fn grid(
             {
                 let Some(ticks) = &ticks[across] else { continue };
                 for (value, _) in &ticks.majors {
-                    let at = scales[across].drawn(*value);
                     // At the very ends there are edges.
-                    if !(bbox.low[across] < at && at < bbox.high[across]) {
+                    if !(ticks.range.0 < *value && *value < ticks.range.1) {
                         continue;
                     }
+                    let at = scales[across].drawn(*value);
                     let end = |is_high_along: bool| {
                         let mut p = DVec3::ZERO;
                         p[axis] = bbox.side(axis, is_high);

@@ -14,7 +14,7 @@ use hiddenline::stages::read::ModelFormat;
 use hiddenline::stages::shading::fill::Coloring;
 use hiddenline::stages::shading::preview::Show;
 use hiddenline::stages::strokes::HiddenLines;
-use hiddenline::stages::surface::{Aspect, Duplicates};
+use hiddenline::stages::surface::Duplicates;
 use hiddenline::stages::write::Format;
 use hiddenline::stages::write::dxf::DxfUnit;
 use hiddenline::stages::write::svg::StrokeElement;
@@ -51,10 +51,6 @@ macro_rules! choices {
 }
 
 choices! {
-    Aspect {
-        Box "Scaled to a box 0.4 times as high as the longer side of its base"
-        Data "To the scale of x and y"
-    }
     BoxFront {
         Dashed "Dashed, 1 mm and 1 mm"
         Solid "Solid"
@@ -222,7 +218,6 @@ mod tests {
 
     #[test]
     fn every_choice_is_parsed_by_its_name() {
-        is_named::<Aspect>();
         is_named::<BoxFront>();
         is_named::<CellOrder>();
         is_named::<Coloring>();

@@ -70,6 +70,22 @@ const RULES: &[Rule] = &[
     Rule { option: "u", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule { option: "v", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule {
+        option: "box-front",
+        commands: &["surface"],
+        is_idle: |c| !c.has("axes", &["box"]),
+        reason: "without --axes box",
+    },
+    Rule {
+        option: "z-axis",
+        commands: &["surface"],
+        is_idle: is_frame,
+        reason: "with --axes frame",
+    },
+    Rule { option: "z-axis", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "tick-step", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "ticks-pi", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "text-height", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
+    Rule {
         option: "every",
         commands: &["surface"],
         is_idle: |c| c.is_given("lines") && !c.has("lines", &["x", "y", "both"]),
@@ -124,6 +140,7 @@ const RULES: &[Rule] = &[
 const PARALLEL: &str = "on an orthographic projection";
 const EXACT: &str = "with --exact, which leaves lines as they are";
 const NO_PATCH: &str = "without --parametric";
+const NO_AXES: &str = "without axes";
 const DATA: &str = "on a picture of depths or normals";
 
 /// What was chosen for a command, typed or set.
@@ -165,6 +182,14 @@ fn is_no_field_of_view(choices: &Choices) -> bool {
 
 fn is_exact(choices: &Choices) -> bool {
     choices.is_set("exact")
+}
+
+fn has_no_axes(choices: &Choices) -> bool {
+    is_exact(choices) || choices.is_set("no-axes") || choices.has("axes", &["none"])
+}
+
+fn is_frame(choices: &Choices) -> bool {
+    choices.has("axes", &["frame"])
 }
 
 fn is_no_patch(choices: &Choices) -> bool {

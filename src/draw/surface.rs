@@ -114,6 +114,9 @@ pub fn draw_surface(
     if surface.n_rim_points_joined() > 0 {
         notes.push(SurfaceNote::RimsJoined(surface.n_rim_points_joined()));
     }
+    if surface.n_not_positive() > 0 {
+        notes.push(SurfaceNote::NotPositive(surface.n_not_positive()));
+    }
     if let Some(none) = without_levels(&surface, lines) {
         if !lines.has_grid_lines() && !lines.has_mesh_lines() {
             return Err(none.into());
@@ -200,11 +203,8 @@ impl Ink {
 fn without_levels(surface: &SampledSurface, lines: &SurfaceLines) -> Option<NoLevels> {
     let levels = lines.levels.as_ref()?;
     let (low, high) = surface.bounds();
-    let (one, other) = match surface.z_factor() {
-        0.0 => (0.0, 0.0),
-        factor => (low.z / factor + 0.0, high.z / factor + 0.0),
-    };
-    let range = one.min(other)..=one.max(other);
+    let (least, most) = surface.ranges()[2];
+    let range = least..=most;
     match levels {
         _ if low.z == high.z => Some(NoLevels::Level { height: brief(*range.start()) }),
         Levels::At(heights) if heights.iter().all(|z| !range.contains(z)) => {
@@ -309,7 +309,9 @@ fn heights(levels: &Levels, surface: &SampledSurface) -> Vec<f64> {
             let n = f64::from(*count) + 1.0;
             (1..=*count).map(|k| low.z + (high.z - low.z) * f64::from(k) / n).collect()
         }
-        Levels::At(heights) => heights.iter().map(|z| z * surface.z_factor()).collect(),
+        Levels::At(heights) => {
+            heights.iter().map(|z| surface.scales()[2].drawn(*z)).filter(|z| !z.is_nan()).collect()
+        }
     }
 }
 

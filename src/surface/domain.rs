@@ -13,6 +13,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::height_function::HeightFunction;
 use super::lined_mesh::{LatticeLines, LinedMesh};
 use super::{Grid, GridError};
 use crate::strokes::StrokeKind;
@@ -46,13 +47,29 @@ impl TrimmedGrid {
         y: (f64, f64),
         n: (usize, usize),
     ) -> Result<Self, GridError> {
-        let whole = Grid::sample(formula, x, y, n)?;
+        let function = HeightFunction::new(formula.clone(), 1.0);
+        let domain = domain.map(|domain| HeightFunction::new(domain.clone(), 1.0));
+        Self::sample_function(&function, domain.as_ref(), x, y, n)
+    }
+
+    /// The same for formulas in the coordinates of the drawn surface.
+    ///
+    /// # Errors
+    /// As [`Grid::sample`].
+    pub fn sample_function(
+        function: &HeightFunction,
+        domain: Option<&HeightFunction>,
+        x: (f64, f64),
+        y: (f64, f64),
+        n: (usize, usize),
+    ) -> Result<Self, GridError> {
+        let whole = Grid::sample_function(function, x, y, n)?;
         let (xs, ys) = (whole.xs().to_vec(), whole.ys().to_vec());
         let mut zs = whole.zs().to_vec();
         if let Some(domain) = domain {
             zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
                 let mut holds = vec![0.0; xs.len()];
-                domain.values(&xs, &vec![y; xs.len()], &mut holds);
+                domain.heights(&xs, &vec![y; xs.len()], &mut holds);
                 for (z, holds) in row.iter_mut().zip(holds) {
                     if !is_true(holds) {
                         *z = f64::NAN;
@@ -64,7 +81,7 @@ impl TrimmedGrid {
         let rim = (0..n.1 as u32)
             .into_par_iter()
             .flat_map_iter(|j| leaving_edges(&grid, j))
-            .map(|edge| (edge, last_inside(&grid, formula, domain, edge)))
+            .map(|edge| (edge, last_inside(&grid, function, domain, edge)))
             .collect();
         Ok(Self { grid, rim })
     }
@@ -121,6 +138,14 @@ impl TrimmedGrid {
         self.grid.scale_heights(factor);
         self.rim.values_mut().for_each(|p| p.z *= factor);
     }
+
+    /// Multiplies the x and y of all points by factors above 0.
+    pub(super) fn scale_lines(&mut self, x: f64, y: f64) {
+        self.grid.scale_lines(x, y);
+        for p in self.rim.values_mut() {
+            (p.x, p.y) = (p.x * x, p.y * y);
+        }
+    }
 }
 
 fn is_true(value: f64) -> bool {
@@ -151,18 +176,18 @@ fn leaving_edges(grid: &Grid, j: u32) -> Vec<[u32; 2]> {
 /// The last point on the way from the first sample to the second that is known to be inside.
 fn last_inside(
     grid: &Grid,
-    formula: &Formula,
-    domain: Option<&Formula>,
+    function: &HeightFunction,
+    domain: Option<&HeightFunction>,
     [a, b]: [u32; 2],
 ) -> DVec3 {
-    let holds = |p: DVec3| domain.is_none_or(|domain| is_true(domain.value(p.x, p.y)));
+    let holds = |p: DVec3| domain.is_none_or(|domain| is_true(domain.height(p.x, p.y)));
     let start = grid.point(a);
     let way = (grid.point(b) - start).with_z(0.0);
     let (mut last, mut low, mut high) = (start, 0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         let p = start + middle * way;
-        let z = formula.value(p.x, p.y);
+        let z = function.height(p.x, p.y);
         if z.is_finite() && holds(p) {
             (low, last) = (middle, p.with_z(z + 0.0));
         } else {

@@ -4,6 +4,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use super::axis_scale::AxisScale;
+use super::height_function::HeightFunction;
 use crate::surface::formula::Formula;
 
 /// Most samples of a grid: 10⁸.
@@ -194,10 +196,23 @@ impl Grid {
         y: (f64, f64),
         n: (usize, usize),
     ) -> Result<Self, GridError> {
+        Self::sample_function(&HeightFunction::new(formula.clone(), 1.0), x, y, n)
+    }
+
+    /// The same for a formula in the coordinates of the drawn surface.
+    ///
+    /// # Errors
+    /// As [`sample`](Self::sample).
+    pub fn sample_function(
+        function: &HeightFunction,
+        x: (f64, f64),
+        y: (f64, f64),
+        n: (usize, usize),
+    ) -> Result<Self, GridError> {
         let (xs, ys) = even_lines(x, y, n)?;
         let mut zs = vec![0.0; n.0 * n.1];
         zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
-            formula.values(&xs, &vec![y; xs.len()], row);
+            function.heights(&xs, &vec![y; xs.len()], row);
         });
         Self::new(xs, ys, zs)
     }
@@ -254,6 +269,38 @@ impl Grid {
     pub fn scale_heights(&mut self, factor: f64) {
         self.zs.iter_mut().for_each(|z| *z *= factor);
         self.heights = Heights::of(&self.zs);
+    }
+
+    /// Multiplies the x and y of all lines by factors above 0. O(lines).
+    pub(super) fn scale_lines(&mut self, x: f64, y: f64) {
+        self.xs.iter_mut().for_each(|value| *value *= x);
+        self.ys.iter_mut().for_each(|value| *value *= y);
+    }
+
+    /// The grid in other coordinates; samples without a coordinate become holes. O(samples).
+    ///
+    /// # Errors
+    /// Lines that have no coordinates, or the same ones.
+    pub(super) fn mapped(&self, scales: &[AxisScale; 3]) -> Result<Self, GridError> {
+        let drawn = |values: &[f64], scale: AxisScale| -> (Vec<f64>, bool) {
+            let mut drawn: Vec<f64> = values.iter().map(|&v| scale.drawn(v)).collect();
+            let is_turned = scale.factor < 0.0;
+            if is_turned {
+                drawn.reverse();
+            }
+            (drawn, is_turned)
+        };
+        let ((xs, x_turned), (ys, y_turned)) =
+            (drawn(&self.xs, scales[0]), drawn(&self.ys, scales[1]));
+        let (nx, ny) = (xs.len(), ys.len());
+        let from = |k: usize| {
+            let (i, j) = (k % nx, k / nx);
+            let (i, j) =
+                (if x_turned { nx - 1 - i } else { i }, if y_turned { ny - 1 - j } else { j });
+            self.zs[j * nx + i]
+        };
+        let zs = (0..nx * ny).into_par_iter().map(|k| scales[2].drawn(from(k))).collect();
+        Self::new(xs, ys, zs)
     }
 
     /// Whether some samples have no height.

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::axis_scale::AxisScale;
 use super::formula::Formula;
 
 /// How many places of an edge are looked at together.
@@ -11,28 +12,42 @@ const PLACES: usize = 63;
 /// until nothing more can be seen in 53 bits, since heights near a peak differ by the square.
 const NARROWINGS: usize = 5;
 
-/// z = f(x, y) times the factor that heights are drawn with.
+/// z = f(x, y) in the coordinates of the drawn surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightFunction {
     formula: Formula,
-    z_factor: f64,
+    scales: [AxisScale; 3],
 }
 
 impl HeightFunction {
     /// The heights of `formula`, multiplied by `z_factor`.
     pub fn new(formula: Formula, z_factor: f64) -> Self {
-        Self { formula, z_factor }
+        Self::scaled(formula, [AxisScale::DATA, AxisScale::DATA, AxisScale::linear(z_factor)])
+    }
+
+    /// The heights of `formula`, which sees values, as coordinates at coordinates.
+    pub fn scaled(formula: Formula, scales: [AxisScale; 3]) -> Self {
+        Self { formula, scales }
     }
 
     /// The height; not a number where there is none.
     pub fn height(&self, x: f64, y: f64) -> f64 {
-        self.formula.value(x, y) * self.z_factor
+        let [of_x, of_y, of_z] = self.scales;
+        of_z.drawn(self.formula.value(of_x.value(x), of_y.value(y)))
     }
 
     /// The heights at many places, as many as the shortest of the three slices holds.
     pub fn heights(&self, xs: &[f64], ys: &[f64], out: &mut [f64]) {
-        self.formula.values(xs, ys, out);
-        out.iter_mut().for_each(|z| *z *= self.z_factor);
+        let [of_x, of_y, of_z] = self.scales;
+        if of_x == AxisScale::DATA && of_y == AxisScale::DATA {
+            self.formula.values(xs, ys, out);
+        } else {
+            let values = |scale: AxisScale, drawn: &[f64]| -> Vec<f64> {
+                drawn.iter().map(|&d| scale.value(d)).collect()
+            };
+            self.formula.values(&values(of_x, xs), &values(of_y, ys), out);
+        }
+        out.iter_mut().for_each(|z| *z = of_z.drawn(*z));
     }
 
     /// The heights at `PLACES` places that divide the part `t0..t1` of the edge from `a` to `b` evenly, and

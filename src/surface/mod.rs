@@ -14,7 +14,9 @@ mod levels;
 mod lined_mesh;
 #[cfg(feature = "points")]
 mod points;
+mod proportions;
 mod sampled;
+mod sampling_error;
 mod source;
 mod split_cells;
 
@@ -27,5 +29,6 @@ pub use lattice_extent::lattice_extent;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
 #[cfg(feature = "points")]
 pub use points::{Duplicates, PointsError, ScatteredPoints, delaunay};
-pub use sampled::{Lattice, SampledSurface, SamplingError};
+pub use sampled::{Lattice, SampledSurface};
+pub use sampling_error::SamplingError;
 pub use source::{Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, Surface};

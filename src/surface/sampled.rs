@@ -3,54 +3,23 @@
 use std::fmt;
 
 use glam::DVec3;
-use thiserror::Error;
 
+use super::axis_scale::AxisScale;
 use super::domain::TrimmedGrid;
 use super::formula::Formula;
 use super::grid::{Grid, GridError, Holes, parameters};
 use super::height_function::HeightFunction;
 use super::lattice_extent::lattice_extent;
 use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
-use super::source::{Aspect, Source, Surface};
+use super::proportions::{check_positive, mapped};
+use super::sampling_error::SamplingError;
+use super::source::{Source, Surface};
 use crate::camera::Camera;
 use crate::extent::Extent;
-
-/// Height of the drawn box as a part of the longer side of its base, with [`Aspect::Box`].
-const BOX_HEIGHT: f64 = 0.4;
 
 /// Rim points of two sheets at the same x and y are one point if their heights differ by at most this
 /// part of the height of both sheets.
 const RIM_TOLERANCE: f64 = 1e-6;
-
-/// Why a surface has no samples that can be drawn.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum SamplingError {
-    /// The samples make no grid.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    /// All samples are holes.
-    #[error("no sample has a height")]
-    NoHeights {
-        /// Whether there are samples with heights, but none of them in the domain.
-        outside_domain: bool,
-    },
-    /// The difference of two heights is too large for a number.
-    #[error(
-        "heights from {low:e} to {high:e} are too far apart to draw; divide the formula or file"
-    )]
-    TooFarApart {
-        /// The lowest.
-        low: f64,
-        /// The highest.
-        high: f64,
-    },
-    /// Scaled heights are too large for a number.
-    #[error("heights times {factor:e} are too large to draw")]
-    TooHigh {
-        /// What they were to be multiplied by.
-        factor: f64,
-    },
-}
 
 /// A surface sampled at points. Its [`Display`](fmt::Display) says how many, for messages.
 #[derive(Debug, Clone)]
@@ -58,7 +27,10 @@ pub struct SampledSurface {
     sheets: Samples,
     /// What the sheets were sampled from, if that is z = f(x, y).
     formulas: Vec<Formula>,
-    z_factor: f64,
+    scales: [AxisScale; 3],
+    /// The smallest and the largest value of each axis.
+    ranges: [(f64, f64); 3],
+    n_not_positive: usize,
 }
 
 #[derive(Debug, Clone)]
@@ -111,6 +83,8 @@ impl Surface {
     pub fn sample(&self, refined: usize) -> Result<SampledSurface, SamplingError> {
         let finer = |n: usize| n.saturating_sub(1).saturating_mul(refined.max(1)).saturating_add(1);
         let n = (finer(self.samples.0), finer(self.samples.1));
+        let scales = self.own_scales();
+        let mut n_not_positive = 0;
         let sheets = match &self.source {
             Source::Formulas { formulas, domain: None } => self.everywhere(formulas, n)?,
             Source::Formulas { formulas, domain: Some(domain) } => {
@@ -121,36 +95,72 @@ impl Surface {
                     joined_at_rim(grids)
                 }
             }
-            Source::Grid(grid) => Samples::Grids(vec![grid.clone()]),
+            Source::Grid(grid) if scales == [AxisScale::DATA; 3] => {
+                Samples::Grids(vec![grid.clone()])
+            }
+            Source::Grid(grid) => {
+                check_positive('x', scales[0], grid.xs()[0])?;
+                check_positive('y', scales[1], grid.ys()[0])?;
+                if scales[2].is_log {
+                    n_not_positive = grid.zs().iter().filter(|z| **z <= 0.0).count();
+                }
+                Samples::Grids(vec![grid.mapped(&scales)?])
+            }
             Source::Triangles { points, triangles } => {
-                Samples::Triangles { points: points.clone(), triangles: triangles.clone() }
+                let (points, n) = mapped(points, &scales);
+                n_not_positive = n;
+                let is_whole = |t: &[u32; 3]| t.iter().all(|&k| points[k as usize].is_finite());
+                // Turning one axis around turns triangles over.
+                let is_turned = self.reversed[0] != self.reversed[1];
+                let kept = triangles.iter().filter(|t| is_whole(t));
+                let kept = kept.map(|&[a, b, c]| if is_turned { [a, c, b] } else { [a, b, c] });
+                let triangles = kept.collect();
+                Samples::Triangles { points, triangles }
             }
             Source::Lattice { n_columns, points } => {
-                Samples::Lattice { n_columns: *n_columns, points: points.clone() }
+                let (points, n) = mapped(points, &scales);
+                n_not_positive = n;
+                self.turned(*n_columns, points)
             }
-            Source::Parametric { formulas, u, v } => lattice(formulas, *u, *v, n)?,
+            Source::Parametric { formulas, u, v } => {
+                let (n_columns, points) = lattice(formulas, *u, *v, n)?;
+                let (points, n) = mapped(&points, &scales);
+                n_not_positive = n;
+                self.turned(n_columns, points)
+            }
         };
         let formulas = match &self.source {
             Source::Formulas { formulas, .. } => formulas.clone(),
             _ => Vec::new(),
         };
-        let mut surface = SampledSurface { sheets, formulas, z_factor: 1.0 };
+        let ranges = [(0.0, 0.0); 3];
+        let mut surface = SampledSurface { sheets, formulas, scales, ranges, n_not_positive };
+        if scales[2].is_log && !surface.formulas.is_empty() {
+            surface.n_not_positive = surface.count_not_positive();
+        }
         let (low, high) = surface.bounds();
         if low.x > high.x {
             return Err(SamplingError::NoHeights { outside_domain: self.has_heights_outside() });
         }
+        surface.ranges = self.ranges(&scales, low, high);
         let size = high - low;
         if !size.is_finite() {
             return Err(SamplingError::TooFarApart { low: low.z, high: high.z });
         }
-        let fitted = BOX_HEIGHT * size.x.max(size.y) / size.z;
-        let fits = self.aspect == Aspect::Box && fitted.is_finite() && fitted > 0.0;
-        let factor = if fits { fitted } else { 1.0 } * self.z_scale;
-        if !(low.z * factor).is_finite() || !(high.z * factor).is_finite() {
-            return Err(SamplingError::TooHigh { factor });
+        let factors = self.factors(size);
+        if !(low.z * factors.z).is_finite() || !(high.z * factors.z).is_finite() {
+            return Err(SamplingError::TooHigh { factor: factors.z });
         }
-        surface.scale_heights(factor);
+        surface.scale_by(factors);
         Ok(surface)
+    }
+
+    /// Rows of points, reversed if that keeps the upper side of the surface where it was.
+    fn turned(&self, n_columns: usize, mut points: Vec<DVec3>) -> Samples {
+        if self.reversed[0] != self.reversed[1] {
+            points.chunks_mut(n_columns.max(1)).for_each(<[DVec3]>::reverse);
+        }
+        Samples::Lattice { n_columns, points }
     }
 
     /// Samples wherever their formulas have values; two that end at the same rim are joined there.
@@ -159,7 +169,8 @@ impl Surface {
         formulas: &[Formula],
         n: (usize, usize),
     ) -> Result<Samples, SamplingError> {
-        let sample = |formula| Grid::sample(formula, self.x, self.y, n);
+        let [x, y] = self.drawn_ranges()?;
+        let sample = |formula: &Formula| Grid::sample_function(&self.function(formula), x, y, n);
         let grids = formulas.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         if grids.len() == 2 && grids.iter().any(|grid| grid.holes() != Holes::None) {
             let trimmed = self.trimmed(formulas, None, n)?;
@@ -177,15 +188,26 @@ impl Surface {
         formulas: &[Formula],
         domain: Option<&Formula>,
         n: (usize, usize),
-    ) -> Result<Vec<TrimmedGrid>, GridError> {
-        let sample = |formula| TrimmedGrid::sample(formula, domain, self.x, self.y, n);
-        formulas.iter().map(sample).collect()
+    ) -> Result<Vec<TrimmedGrid>, SamplingError> {
+        let [x, y] = self.drawn_ranges()?;
+        let [of_x, of_y, _] = self.own_scales();
+        let domain = domain
+            .map(|domain| HeightFunction::scaled(domain.clone(), [of_x, of_y, AxisScale::DATA]));
+        let sample = |formula: &Formula| {
+            TrimmedGrid::sample_function(&self.function(formula), domain.as_ref(), x, y, n)
+        };
+        Ok(formulas.iter().map(sample).collect::<Result<_, _>>()?)
+    }
+
+    fn function(&self, formula: &Formula) -> HeightFunction {
+        HeightFunction::scaled(formula.clone(), self.own_scales())
     }
 
     /// Whether there is a domain, and samples have heights outside of it.
     fn has_heights_outside(&self) -> bool {
         let Source::Formulas { formulas, domain: Some(_) } = &self.source else { return false };
-        let sample = |formula| Grid::sample(formula, self.x, self.y, self.samples);
+        let Ok([x, y]) = self.drawn_ranges() else { return false };
+        let sample = |f: &Formula| Grid::sample_function(&self.function(f), x, y, self.samples);
         formulas.iter().any(|f| sample(f).is_ok_and(|grid| grid.heights().is_some()))
     }
 }
@@ -195,7 +217,7 @@ fn lattice(
     u: (f64, f64),
     v: (f64, f64),
     n: (usize, usize),
-) -> Result<Samples, GridError> {
+) -> Result<(usize, Vec<DVec3>), GridError> {
     let (us, vs) = parameters(u, v, n)?;
     let mut points = Vec::with_capacity(n.0 * n.1);
     for v in vs {
@@ -206,7 +228,7 @@ fn lattice(
         points.extend((0..us.len()).map(|i| DVec3::new(rows[0][i], rows[1][i], rows[2][i])));
     }
     close_seams(us.len(), &mut points);
-    Ok(Samples::Lattice { n_columns: us.len(), points })
+    Ok((us.len(), points))
 }
 
 /// Samples whose rims meet up to rounding are joined there if there are two of them.
@@ -227,9 +249,33 @@ fn rim_tolerance(grids: &[TrimmedGrid]) -> f64 {
 }
 
 impl SampledSurface {
-    /// The factor that heights were multiplied by.
-    pub fn z_factor(&self) -> f64 {
-        self.z_factor
+    /// How values became coordinates along x, y and z.
+    pub fn scales(&self) -> &[AxisScale; 3] {
+        &self.scales
+    }
+
+    /// The smallest and the largest value along x, y and z.
+    pub fn ranges(&self) -> &[(f64, f64); 3] {
+        &self.ranges
+    }
+
+    /// How many samples are holes because a value on a logarithmic axis is not above 0.
+    pub fn n_not_positive(&self) -> usize {
+        self.n_not_positive
+    }
+
+    /// Samples of formulas whose heights have no logarithm.
+    fn count_not_positive(&self) -> usize {
+        let [of_x, of_y, _] = self.scales;
+        let is_hole = |z: f64| z.is_nan();
+        let count = |(formula, lattice): (&Formula, &Lattice)| {
+            (0..lattice.n_samples)
+                .map(|k| lattice.sample(k))
+                .filter(|p| is_hole(p.z))
+                .filter(|p| formula.value(of_x.value(p.x), of_y.value(p.y)) <= 0.0)
+                .count()
+        };
+        self.formulas.iter().zip(&self.lattices()).map(count).sum()
     }
 
     /// The (lowest, highest) corner of the box around all points; holes do not count.
@@ -269,17 +315,26 @@ impl SampledSurface {
         self.lattices().iter().map(of).fold(Extent::EMPTY, Extent::union)
     }
 
-    fn scale_heights(&mut self, factor: f64) {
+    fn scale_by(&mut self, factors: DVec3) {
+        let (x, y) = (factors.x, factors.y);
         match &mut self.sheets {
-            Samples::Grids(grids) => grids.iter_mut().for_each(|grid| grid.scale_heights(factor)),
+            Samples::Grids(grids) => {
+                for grid in grids {
+                    grid.scale_heights(factors.z);
+                    grid.scale_lines(x, y);
+                }
+            }
             Samples::Trimmed { grids, .. } => {
-                grids.iter_mut().for_each(|grid| grid.scale_heights(factor));
+                for grid in grids {
+                    grid.scale_heights(factors.z);
+                    grid.scale_lines(x, y);
+                }
             }
             Samples::Triangles { points, .. } | Samples::Lattice { points, .. } => {
-                points.iter_mut().for_each(|p| p.z *= factor);
+                points.iter_mut().for_each(|p| *p *= factors);
             }
         }
-        self.z_factor *= factor;
+        (0..3).for_each(|k| self.scales[k].factor *= factors[k]);
     }
 
     /// Its triangles with these lines, split for level curves at `levels` (see
@@ -291,7 +346,7 @@ impl SampledSurface {
         let formulas = if is_traced { &self.formulas[..] } else { &[] };
         let function = |sheet: usize| {
             let formula = formulas.get(sheet)?;
-            Some(HeightFunction::new(formula.clone(), self.z_factor))
+            Some(HeightFunction::scaled(formula.clone(), self.scales))
         };
         match &self.sheets {
             Samples::Grids(grids) => {

@@ -44,6 +44,10 @@ pub struct Surface {
     pub(super) samples: (usize, usize),
     pub(super) aspect: Aspect,
     pub(super) z_scale: f64,
+    /// Which of the axes x, y, z are logarithmic.
+    pub(super) log: [bool; 3],
+    /// Whether x and y run the other way.
+    pub(super) reversed: [bool; 2],
 }
 
 /// Where the points of a surface come from.
@@ -72,27 +76,16 @@ pub(super) enum Source {
     },
 }
 
-/// Whether heights are drawn to the scale of x and y.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How long the edges of the box around a surface are.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aspect {
-    /// Heights are scaled so that the box around the surface is 0.4 times as high as the longer side of
-    /// its base.
+    /// x and y to scale, and 0.4 times the longer of the two for heights. If one of x and y is more than
+    /// 5 times as long as the other, or logarithmic, both are equally long.
     Box,
-    /// As they are.
+    /// All to scale.
     Data,
-}
-
-impl Aspect {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Box, Self::Data];
-
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Box => "box",
-            Self::Data => "data",
-        }
-    }
+    /// In these proportions.
+    Lengths([f64; 3]),
 }
 
 impl Surface {
@@ -221,7 +214,7 @@ impl Surface {
     fn new(source: Source, aspect: Aspect) -> Self {
         let (x, y) = (DEFAULT_RANGE, DEFAULT_RANGE);
         let samples = (DEFAULT_SAMPLES, DEFAULT_SAMPLES);
-        Self { source, x, y, samples, aspect, z_scale: 1.0 }
+        Self { source, x, y, samples, aspect, z_scale: 1.0, log: [false; 3], reversed: [false; 2] }
     }
 
     /// Adds a sheet. It matters only for surfaces of formulas.
@@ -253,13 +246,14 @@ impl Surface {
         self
     }
 
-    /// The range of x that formulas are sampled over.
+    /// The range of x that formulas are sampled over. If `from` is larger than `to`, the axis is turned
+    /// around.
     pub fn x(mut self, from: f64, to: f64) -> Self {
         self.x = (from, to);
         self
     }
 
-    /// The range of y that formulas are sampled over.
+    /// The range of y that formulas are sampled over, as for [`x`](Self::x).
     pub fn y(mut self, from: f64, to: f64) -> Self {
         self.y = (from, to);
         self
@@ -271,7 +265,7 @@ impl Surface {
         self
     }
 
-    /// Whether heights are drawn to the scale of x and y; [`Aspect::Box`] unless set, but
+    /// How long the edges of the box around the surface are; [`Aspect::Box`] unless set, but
     /// [`Aspect::Data`] for parametric surfaces.
     pub fn aspect(mut self, aspect: Aspect) -> Self {
         self.aspect = aspect;
@@ -281,6 +275,26 @@ impl Surface {
     /// Multiplies heights, after the scaling of [`Aspect::Box`].
     pub fn z_scale(mut self, factor: f64) -> Self {
         self.z_scale = factor;
+        self
+    }
+
+    /// Which of the axes x, y and z are logarithmic. Formulas see true values, sampled evenly in the
+    /// logarithm. Points where one of these values is not above 0 are holes.
+    ///
+    /// ```
+    /// use hiddenline::Surface;
+    ///
+    /// let decay = Surface::formula("1/(x*y)")?.x(0.1, 1000.0).y(1.0, 5.0).log([true, false, true]);
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn log(mut self, axes: [bool; 3]) -> Self {
+        self.log = axes;
+        self
+    }
+
+    /// Which of the axes x and y run the other way.
+    pub fn reversed(mut self, axes: [bool; 2]) -> Self {
+        self.reversed = axes;
         self
     }
 

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::{Axes, AxesStyle, BoxFront, TickRule, Titles, ZAxis};
 
+use super::input_args::AxisName;
 use crate::cli::choice::one_of;
 use crate::cli::values;
 
@@ -54,13 +55,6 @@ enum StyleName {
     Frame,
     /// Neither axes nor titles
     None,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum AxisName {
-    X,
-    Y,
-    Z,
 }
 
 /// Titles of the three axes.
@@ -121,7 +115,7 @@ impl AxesArgs {
         };
         let steps = self.tick_step.map_or([None; 3], |Steps(steps)| steps);
         let mut ticks = [TickRule::Round; 3];
-        for (k, name) in [AxisName::X, AxisName::Y, AxisName::Z].into_iter().enumerate() {
+        for (k, name) in AxisName::ALL.into_iter().enumerate() {
             ticks[k] = match (steps[k], self.ticks_pi.contains(&name)) {
                 (Some(_), true) => {
                     return Err("--tick-step and --ticks-pi are given for the same axis".into());

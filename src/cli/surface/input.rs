@@ -47,6 +47,8 @@ pub(in crate::cli) struct SurfaceInput {
     pub(super) duplicates: Duplicates,
     pub(super) z_scale: f64,
     pub(super) aspect: Aspect,
+    pub(super) log: [bool; 3],
+    pub(super) reversed: [bool; 2],
 }
 
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
@@ -132,13 +134,17 @@ impl SurfaceInput {
                 surface.samples(samples.0, samples.1)
             }
         };
-        Ok(surface.aspect(self.aspect).z_scale(self.z_scale))
+        let surface = surface.aspect(self.aspect).z_scale(self.z_scale);
+        Ok(surface.log(self.log).reversed(self.reversed))
     }
 
     /// Why the surface cannot be sampled, and what can be done about it.
     pub(super) fn sampling_error(&self, error: &SamplingError) -> String {
         match error {
             SamplingError::NoHeights { outside_domain } => self.nothing_to_draw(*outside_domain),
+            SamplingError::NotPositive { axis, .. } => {
+                format!("{error}; give another range by --{axis} or leave {axis} out of --log")
+            }
             _ => error.to_string(),
         }
     }

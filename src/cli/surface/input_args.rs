@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use hiddenline::stages::surface::formula::{Formula, Parameter, Variables};
 use hiddenline::stages::surface::{Aspect, Duplicates, HeightOptions, MAX_SAMPLES};
 
@@ -50,11 +50,11 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["grid", "points"])]
     set: Vec<Parameter>,
-    /// Range of x [default: -5:5, for a file 0 to columns - 1]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    /// Range of x; 5:-5 turns the axis around [default: -5:5, for a file 0 to columns - 1]
+    #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     x: Option<(f64, f64)>,
-    /// Range of y [default: -5:5, for a file 0 to rows - 1]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    /// Range of y, as for x [default: -5:5, for a file 0 to rows - 1]
+    #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     y: Option<(f64, f64)>,
     /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]
     #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
@@ -74,11 +74,28 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(default_value_t = 1.0)]
     z_scale: f64,
-    /// Whether heights are drawn to the scale of x and y
+    /// Lengths of the box's edges: box, data, or proportions such as 4:4:3
     ///
-    /// --z-scale applies on top. The default is box, but data with --parametric.
-    #[arg(long, value_parser = one_of::<Aspect>())]
+    /// box draws x and y to scale, and makes the box 0.4 times as high as the longer of the two; if one of
+    /// them is more than 5 times as long as the other, or logarithmic, both are equally long. data draws
+    /// all to scale. --z-scale applies on top. The default is box, but data with --parametric.
+    #[arg(long, value_name = "ASPECT", value_parser = aspect)]
     aspect: Option<Aspect>,
+    /// Logarithmic axes, such as x,z; formulas see true values
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "AXES")]
+    log: Vec<AxisName>,
+}
+
+/// One of the three axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum AxisName {
+    X,
+    Y,
+    Z,
+}
+
+impl AxisName {
+    pub(super) const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 }
 
 impl SurfaceInputArgs {
@@ -119,20 +136,29 @@ impl SurfaceInputArgs {
             if self.nodata.is_some() {
                 return Err("--nodata is for --grid and --points".into());
             }
-            if is_given || self.aspect.is_some() || self.z_scale != 1.0 || !parameters.is_empty() {
+            if is_given
+                || self.aspect.is_some()
+                || !self.log.is_empty()
+                || self.z_scale != 1.0
+                || !parameters.is_empty()
+            {
                 return Err(
-                    "--x, --y, --set, --samples, --z-scale and --aspect are for surfaces: give \
+                    "--x, --y, --set, --samples, --z-scale, --aspect and --log are for surfaces: give \
                             --expr, --grid, --points or --parametric"
                         .into(),
                 );
             }
             return Ok(None);
         };
+        let is_reversed = |range: Option<(f64, f64)>| range.is_some_and(|(from, to)| from > to);
+        let sorted = |(from, to): (f64, f64)| (from.min(to), from.max(to));
         Ok(Some(SurfaceInput {
             input,
+            log: AxisName::ALL.map(|axis| self.log.contains(&axis)),
+            reversed: [self.x, self.y].map(is_reversed),
             options: HeightOptions {
-                x: self.x,
-                y: self.y,
+                x: self.x.map(sorted),
+                y: self.y.map(sorted),
                 flip_y: self.flip_y,
                 nodata: self.nodata,
             },
@@ -175,9 +201,30 @@ fn parameter(text: &str) -> Result<Parameter, String> {
 
 /// Two numbers, the smaller first, with a colon between them.
 fn range(text: &str) -> Result<(f64, f64), String> {
+    let (from, to) = either_way(text)?;
+    if from < to { Ok((from, to)) } else { Err("the first number must be the smaller one".into()) }
+}
+
+/// Two different numbers with a colon between them.
+fn either_way(text: &str) -> Result<(f64, f64), String> {
     let (from, to) = text.split_once(':').ok_or("give two numbers, as in -2:2")?;
     let (from, to) = (constant(from)?, constant(to)?);
-    if from < to { Ok((from, to)) } else { Err("the first number must be the smaller one".into()) }
+    if from != to { Ok((from, to)) } else { Err("the two numbers must be different".into()) }
+}
+
+/// `box`, `data`, or three lengths above 0 with colons between them.
+fn aspect(text: &str) -> Result<Aspect, String> {
+    match text {
+        "box" => Ok(Aspect::Box),
+        "data" => Ok(Aspect::Data),
+        _ => {
+            let lengths: Result<Vec<f64>, _> = text.split(':').map(values::positive).collect();
+            let lengths = lengths.ok().and_then(|lengths| lengths.try_into().ok());
+            lengths
+                .map(Aspect::Lengths)
+                .ok_or_else(|| "give box, data, or three lengths, as in 4:4:3".to_owned())
+        }
+    }
 }
 
 /// Numbers of samples along x and y.

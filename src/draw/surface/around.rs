@@ -23,7 +23,7 @@ use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions, Placement};
 use crate::predicates::PiercePoint;
 use crate::strokes::Strokes;
-use crate::surface::{AxisScale, SampledSurface};
+use crate::surface::SampledSurface;
 
 /// Height of numbers as a part of the page's diagonal.
 const TEXT_HEIGHT: f64 = 0.01;
@@ -139,12 +139,7 @@ fn text_height_mm(page: &Page, pen_width_mm: f64) -> f64 {
 /// The box around a surface with the values on its axes.
 fn axes_box(surface: &SampledSurface) -> AxesBox {
     let (low, high) = surface.bounds();
-    let z = AxisScale::linear(surface.z_factor());
-    let scales = [AxisScale::DATA, AxisScale::DATA, z];
-    let ranges = [0, 1, 2].map(|k| {
-        let (a, b) = (scales[k].value(low[k]), scales[k].value(high[k]));
-        (a.min(b) + 0.0, a.max(b) + 0.0)
-    });
+    let (scales, ranges) = (*surface.scales(), *surface.ranges());
     AxesBox { low, high, scales, ranges, z_may_grow: true }
 }
 

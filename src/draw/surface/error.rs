@@ -110,6 +110,9 @@ pub enum SurfaceNote {
     /// Letters of titles that the font does not have.
     #[error("the font has no {}: drawn as question marks", list(.0))]
     MissingLetters(Vec<char>),
+    /// Samples without a logarithm.
+    #[error("{0} samples are left out: a value on a logarithmic axis is not above 0")]
+    NotPositive(usize),
     /// Text takes up so much room that the drawing is small.
     #[error("numbers and titles leave little room for the drawing on this page")]
     LittleRoom,

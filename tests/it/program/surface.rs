@@ -206,8 +206,13 @@ fn bad_input_is_told_in_one_line() {
     let usage = |arguments: &[&str], message: &str| fails(&folder, arguments, 2, message);
     usage(&["sine(x)"], "column 1: unknown name `sine`; did you mean `sin`?");
     usage(&["x", "1 +"], "in formula 2 of 2, column");
-    usage(&["x", "--x", "3:1"], "the first number must be the smaller one");
-    usage(&["x", "--x", "1:1"], "the first number must be the smaller one");
+    usage(&["x", "--x", "1:1"], "the two numbers must be different");
+    usage(&["x", "--aspect", "4:3"], "give box, data, or three lengths, as in 4:4:3");
+    usage(&["x", "--axis-titles", "a,b"], "a comma in a title is written `\\,`");
+    usage(&["x", "--tick-step", "1,,", "--ticks-pi", "x"], "are given for the same axis");
+    usage(&["x", "--axes", "none", "--title", "T"], "leaves out the title, too");
+    fails(&folder, &["x", "--axes", "frame"], 1, "give --view top or other --axes");
+    fails(&folder, &["x", "--log", "x"], 1, "give another range by --x or leave x out of --log");
     usage(&["x", "--samples", "0"], "at least 2 samples are needed");
     usage(&["x", "--samples", "1000000000"], "are more than 100000000");
     usage(&["x", "--samples", "1x5"], "at least 2 samples are needed");

@@ -11,4 +11,5 @@ mod max_min;
 mod meshed;
 mod pen_path;
 mod points;
+mod scales;
 mod tin;
