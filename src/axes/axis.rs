@@ -43,7 +43,7 @@ const BETWEEN_NUMBERS: f64 = 1.0;
 
 /// Places that are tried for a number, relative to the usual one: along the axis by parts of half its
 /// width, and away from it by parts of its height.
-const SHIFTS: [(f64, f64); 8] = [
+const SHIFTS: [(f64, f64); 12] = [
     (0.0, 0.0),
     (0.5, 0.0),
     (1.0, 0.0),
@@ -51,7 +51,11 @@ const SHIFTS: [(f64, f64); 8] = [
     (0.5, 0.7),
     (1.0, 0.7),
     (0.0, 1.4),
+    (0.5, 1.4),
     (1.0, 1.4),
+    (0.0, 2.1),
+    (0.5, 2.1),
+    (1.0, 2.1),
 ];
 
 /// How large things are in the image.
@@ -174,11 +178,9 @@ impl AxisLine {
             let number = tick.number.and_then(|number| {
                 let inwards = along * (middle - tick.foot).dot(along).signum();
                 let half = number.reach(along);
-                let way = (tick.tip - tick.foot).normalize_or_zero();
-                let away = if self.inwards { -way } else { way } * sizes.text;
-                SHIFTS.into_iter().find_map(|(along, out)| {
+                SHIFTS.into_iter().find_map(|(along, away)| {
                     let mut moved = number.clone();
-                    moved.anchor += inwards * (along * half) + away * out;
+                    moved.anchor += inwards * (along * half) + laid.out * (away * sizes.text);
                     let own = laid.ticks.iter().filter_map(|tick| tick.number.as_ref());
                     is_clear(&moved, own.chain(taken), ink, sizes).then_some(moved)
                 })

@@ -69,6 +69,9 @@ pictures! {
     surface_terrain the_landscape_is_up_to_date "../../../examples/surface_terrain.rs";
     surface_torus the_torus_is_up_to_date "../../../examples/surface_torus.rs";
     surface_volcano the_volcano_is_up_to_date "../../../examples/surface_volcano.rs";
+    surface_walls the_walls_are_up_to_date "../../../examples/surface_walls.rs";
+    surface_room the_room_is_up_to_date "../../../examples/surface_room.rs";
+    surface_resonance the_resonance_is_up_to_date "../../../examples/surface_resonance.rs";
     surface_peaks the_peaks_are_up_to_date "../../../examples/surface_peaks.rs";
 }
 
