@@ -102,6 +102,8 @@ pub(super) struct LaidAxis {
     pub(super) chosen: Option<Ticks>,
     pub(super) exponent: Option<TextBlock>,
     pub(super) title: Option<TextBlock>,
+    /// How far ticks and numbers reach out from the axis, but for numbers that made room for others.
+    pub(super) reach: f64,
 }
 
 impl AxisLine {
@@ -148,6 +150,7 @@ impl AxisLine {
             chosen: None,
             exponent: None,
             title: None,
+            reach: 0.0,
         };
         if self.length_mm(camera, sizes) < SHORTEST_AXIS_MM {
             return Some(laid);
@@ -175,6 +178,9 @@ impl AxisLine {
             return Some(laid);
         };
         for tick in placed {
+            let reach = |text: &TextBlock| (text.anchor - ends[0]).dot(out) + text.reach(out);
+            let number_reach = tick.number.as_ref().map_or(0.0, reach);
+            laid.reach = laid.reach.max((tick.tip - tick.foot).dot(out)).max(number_reach);
             let number = tick.number.and_then(|number| {
                 let inwards = along * (middle - tick.foot).dot(along).signum();
                 let half = number.reach(along);
@@ -182,7 +188,7 @@ impl AxisLine {
                     let mut moved = number.clone();
                     moved.anchor += inwards * (along * half) + laid.out * (away * sizes.text);
                     let own = laid.ticks.iter().filter_map(|tick| tick.number.as_ref());
-                    is_clear(&moved, own.chain(taken), ink, sizes).then_some(moved)
+                    is_clear(&moved, own.chain(taken), ink, CLEARANCE * sizes.text).then_some(moved)
                 })
             });
             laid.ticks.push(LaidTick { number, ..tick });
@@ -270,15 +276,6 @@ impl LaidAxis {
         ticks.chain(self.minors.iter().map(|minor| minor.to_vec()))
     }
 
-    /// How far numbers reach out from the axis.
-    pub(super) fn reach(&self) -> f64 {
-        let numbers = self.ticks.iter().filter_map(|tick| tick.number.as_ref());
-        let of =
-            |text: &TextBlock| (text.anchor - self.ends[0]).dot(self.out) + text.reach(self.out);
-        let tips = self.ticks.iter().map(|tick| (tick.tip - tick.foot).dot(self.out));
-        numbers.map(of).chain(tips).fold(0.0, f64::max)
-    }
-
     pub(super) fn draw(&self, drawing: &mut Strokes) {
         drawing.push(StrokeKind::Axis, 0, self.ends);
         for tick in &self.ticks {
@@ -291,14 +288,13 @@ impl LaidAxis {
     }
 }
 
-/// Whether text is clear of other text and of ink.
+/// Whether text is at least `clearance` away from other text and from ink.
 pub(super) fn is_clear<'a>(
     text: &TextBlock,
     mut texts: impl Iterator<Item = &'a TextBlock>,
     ink: &[Vec<DVec2>],
-    sizes: &Sizes,
+    clearance: f64,
 ) -> bool {
-    let clearance = CLEARANCE * sizes.text;
     texts.all(|other| text.is_clear_of(&other.corners(), clearance))
         && ink.iter().all(|ink| text.is_clear_of(ink, clearance))
 }

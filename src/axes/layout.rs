@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec2};
 
-use super::axis::{AxisLine, LaidAxis, Sizes, is_clear};
+use super::axis::{AxisLine, CLEARANCE, LaidAxis, Sizes, is_clear};
 use super::bounding_box::{BoundingBox, EdgePlace, hull};
 use super::font::text;
 use super::options::{Axes, AxesStyle, BoxFront, ZAxis};
@@ -37,7 +37,7 @@ const STEEP: f64 = 2.0;
 /// Most lines of a title.
 const MOST_LINES: usize = 3;
 
-/// How many times at most a text moves farther out, by half a number's height each time.
+/// How many times at most a text moves farther out, by a quarter of a number's height each time.
 const MOST_STEPS: usize = 400;
 
 /// Dashes and gaps of the box's front edges, in millimeters on paper.
@@ -297,8 +297,9 @@ impl Layouter<'_> {
         // A number next to another axis may touch its ticks, which came later.
         for axis in &mut layout.axes {
             for tick in &mut axis.ticks {
-                let is_clear =
-                    |text: &TextBlock| is_clear(text, [].into_iter(), &ink[1..], &self.sizes);
+                let is_clear = |text: &TextBlock| {
+                    is_clear(text, [].into_iter(), &ink[1..], CLEARANCE * self.sizes.text)
+                };
                 tick.number = tick.number.take().filter(is_clear);
             }
         }
@@ -432,23 +433,23 @@ impl Layouter<'_> {
         let line = format!("×10^{{{}}}", exponent.to_string().replace('-', "−"));
         let mut block = TextBlock::line(&line, self.sizes.text);
         let along = (axis.ends[1] - axis.ends[0]).normalize_or_zero();
-        let gap = super::axis::CLEARANCE * self.sizes.text;
-        let away = (axis.reach() - block.reach(axis.out)).max(gap + block.reach(-axis.out));
+        let gap = CLEARANCE * self.sizes.text;
+        let away = (axis.reach - block.reach(axis.out)).max(gap + block.reach(-axis.out));
         block.anchor = axis.ends[1] + axis.out * away + along * block.reach(-along);
-        self.push_out(block, along, texts, ink)
+        self.push_out(block, along, (texts, ink), gap)
     }
 
-    /// Moves text in a direction until it is clear of text and ink.
+    /// Moves text in a direction until it is at least `clearance` away from text and ink.
     fn push_out(
         &self,
         mut block: TextBlock,
         direction: DVec2,
-        texts: &[TextBlock],
-        ink: &[Vec<DVec2>],
+        (texts, ink): (&[TextBlock], &[Vec<DVec2>]),
+        clearance: f64,
     ) -> Option<TextBlock> {
         for _ in 0..MOST_STEPS {
-            if is_clear(&block, texts.iter(), ink, &self.sizes) {
-                return Some(block);
+            if is_clear(&block, texts.iter(), ink, clearance) {
+                break;
             }
             block.anchor += direction * (self.sizes.text / 4.0);
         }
@@ -480,11 +481,11 @@ impl Layouter<'_> {
         let gap = GAP_TO_TITLE * self.sizes.text;
         if at_end {
             block.anchor = axis.ends[1] + along * (gap + block.reach(-along));
-            return self.push_out(block, (along + axis.out) / 2.0, texts, ink);
+            return self.push_out(block, (along + axis.out) / 2.0, (texts, ink), gap);
         }
         let middle = axis.ends[0] / 2.0 + axis.ends[1] / 2.0;
-        block.anchor = middle + axis.out * (axis.reach() + gap + block.reach(-axis.out));
-        self.push_out(block, axis.out, texts, ink)
+        block.anchor = middle + axis.out * (axis.reach + gap + block.reach(-axis.out));
+        self.push_out(block, axis.out, (texts, ink), gap)
     }
 
     /// The title of the drawing, above everything.
