@@ -59,7 +59,7 @@ impl Surface {
     pub fn scene(&self) -> Result<Scene, Error> {
         let no_lines =
             LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
-        let sampled = self.sample(1).map_err(SurfaceError::from)?;
+        let sampled = self.sample().map_err(SurfaceError::from)?;
         let mesh = sampled.lined(&no_lines, &[]).into_mesh()?;
         if mesh.n_faces() == 0 {
             return Err(SurfaceError::NoCells.into());

@@ -12,17 +12,20 @@ use crate::engines::surface::{GridPieces, SurfaceSide, VisiblePiece};
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
 use crate::strokes::{StrokeKind, Strokes};
-use crate::surface::Grid;
+use crate::surface::formula::Axis;
+use crate::surface::{Grid, Places};
 
 /// Which grid lines are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct GridLines {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridLines<'a> {
     /// Those along x.
     pub along_x: bool,
     /// Those along y.
     pub along_y: bool,
     /// Only each line with a number that is a multiple of this, counted from 0, and the last one.
     pub every: usize,
+    /// Which lines of the grid count, if not all do.
+    pub places: Option<&'a Places>,
     /// Only what is seen from this side; lines on the surface's border are seen as their triangle
     /// is.
     pub side: Option<SurfaceSide>,
@@ -30,9 +33,10 @@ pub struct GridLines {
     pub separate: bool,
 }
 
-impl Default for GridLines {
+impl Default for GridLines<'_> {
     fn default() -> Self {
-        Self { along_x: true, along_y: true, every: 1, side: None, separate: false }
+        let (side, places) = (None, None);
+        Self { along_x: true, along_y: true, every: 1, places, side, separate: false }
     }
 }
 
@@ -42,17 +46,25 @@ impl Default for GridLines {
 pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLines) -> Strokes {
     let projector = Projector::new(camera);
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
-    let every = lines.every.max(1);
-    let chosen = |n: usize| (0..n).filter(move |k| k % every == 0 || k + 1 == n);
+    let chosen = |n: usize, axis: Axis| -> Vec<usize> {
+        let every = lines.every.max(1);
+        match lines.places {
+            Some(places) => {
+                let drawn = places.drawn(axis, every);
+                (0..n).filter(|&k| drawn[k]).collect()
+            }
+            None => (0..n).filter(|k| k % every == 0 || k + 1 == n).collect(),
+        }
+    };
     let mut families: Vec<Vec<GridLine>> = Vec::new();
     if lines.along_x {
         let line = |j| GridLine { first: j * nx, step: 1, edge: j * (nx - 1), n: nx };
-        families.push(chosen(ny).map(line).collect());
+        families.push(chosen(ny, Axis::Second).into_iter().map(line).collect());
     }
     if lines.along_y {
         let along_x = ny * (nx - 1);
         let line = |i| GridLine { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
-        families.push(chosen(nx).map(line).collect());
+        families.push(chosen(nx, Axis::First).into_iter().map(line).collect());
     }
     let mut drawing = Strokes::default();
     for family in &families {

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use hiddenline::stages::draw::surface::Certificate;
 use hiddenline::stages::draw::{DrawOutput, MeshSize};
 use hiddenline::stages::engines::face::FaceWork;
 use hiddenline::stages::optimize::estimate::PenWork;
@@ -37,9 +38,42 @@ pub(super) struct Stats {
     pub(super) seconds: Seconds,
     /// Counts of the engine.
     pub(super) counts: Counts,
+    /// How close the lines of a surface are to its formulas; none if that is not proved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certified: Option<Certified>,
     /// The work of the pens, before and after strokes were joined and ordered; none without pens.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) plot: Option<PlotStats>,
+}
+
+/// How close the lines of a surface are to its formulas.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub(super) struct Certified {
+    /// Greatest distance of a certified chord from the function, in millimeters on paper.
+    bound_mm: f64,
+    /// Chords of drawn lines.
+    lines: usize,
+    /// Those of them that are not certified.
+    uncertified_lines: usize,
+    /// Cells between lines.
+    cells: usize,
+    /// Those of them that are not certified.
+    uncertified_cells: usize,
+    /// How often formulas were enclosed.
+    jets: usize,
+}
+
+impl From<Certificate> for Certified {
+    fn from(certificate: Certificate) -> Self {
+        Self {
+            bound_mm: certificate.bound_mm,
+            lines: certificate.chords,
+            uncertified_lines: certificate.uncertified_chords,
+            cells: certificate.cells,
+            uncertified_cells: certificate.uncertified_cells,
+            jets: certificate.jets,
+        }
+    }
 }
 
 /// The work of the pens before and after joining and ordering.

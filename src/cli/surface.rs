@@ -94,6 +94,12 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
     run.stats.count(drawing.size);
     run.stats.add(&drawing.drawn);
     run.notes.summary = format!("{}: {}", job.sheets.title(), drawing.samples);
+    if let Some(certificate) = drawing.certificate {
+        run.stats.certified = Some(certificate.into());
+        if certificate.holds() {
+            run.notes.summary.push_str(&format!("; {certificate}"));
+        }
+    }
     let usual = OptimizeOptions::for_drawings();
     let usual = if drawing.is_ordered {
         OptimizeOptions { join_tolerance_mm: None, effort: Effort::None, ..usual }
@@ -134,7 +140,7 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
 /// What is worth knowing about a drawing, with the options that help.
 fn noted(note: &SurfaceNote) -> String {
     match note {
-        SurfaceNote::OffFunction { .. } => format!("{note}; more --samples draw it more closely"),
+        SurfaceNote::Uncertified(_) => format!("{note}: more --samples"),
         SurfaceNote::NoLevels(none) => without_levels(none),
         SurfaceNote::LittleRoom => {
             format!(

@@ -8,6 +8,10 @@
 //! ```
 
 mod around;
+mod bound;
+mod certificate;
+mod certified_cells;
+mod certified_line;
 mod error;
 mod grid;
 mod options;
@@ -15,6 +19,7 @@ mod smoothness;
 
 use glam::{DVec2, DVec3};
 
+pub use self::certificate::Certificate;
 pub use self::error::{MAX_TRIANGLES, NoLevels, SurfaceError, SurfaceNote};
 pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLines};
 
@@ -58,6 +63,8 @@ pub struct SurfaceOutput {
     pub extent: Extent,
     /// How many samples there are, in words.
     pub samples: String,
+    /// How close drawn lines are to the formulas; none if that is not asked for, or not by formulas.
+    pub certificate: Option<Certificate>,
     /// What is worth knowing about the drawing.
     pub notes: Vec<SurfaceNote>,
     /// Whether the strokes run along the lines of a grid already, with short pen-up travel and none on
@@ -105,11 +112,11 @@ pub fn draw_surface(
     page: &PageOptions,
 ) -> Result<SurfaceOutput, SurfaceError> {
     let mut seconds = Seconds::default();
-    let SmoothSurface { surface, camera, refined, deviation_mm } =
+    let SmoothSurface { surface, camera, certificate } =
         timed(&mut seconds.read, || sample(surface, view, lines, page))?;
     let mut notes = Vec::new();
-    if deviation_mm > lines.smoothness_mm {
-        notes.push(SurfaceNote::OffFunction { deviation_mm });
+    if let Some(certificate) = certificate.filter(|certificate| !certificate.holds()) {
+        notes.push(SurfaceNote::Uncertified(certificate));
     }
     if surface.n_rim_points_joined() > 0 {
         notes.push(SurfaceNote::RimsJoined(surface.n_rim_points_joined()));
@@ -123,14 +130,13 @@ pub fn draw_surface(
         }
         notes.push(SurfaceNote::NoLevels(none));
     }
-    let every = lines.every.saturating_mul(refined);
     let grid = grid_to_draw(&surface, lines, &camera)?;
     if grid.is_none() && lines.order.is_some() {
         return Err(SurfaceError::Order);
     }
     let lined = match grid {
         Some(_) => None,
-        None => Some(timed(&mut seconds.topology, || lined(&surface, lines, every))?),
+        None => Some(timed(&mut seconds.topology, || lined(&surface, lines))?),
     };
     let extent = match &lined {
         Some(lined) => lined.scene.extent(&camera),
@@ -139,7 +145,7 @@ pub fn draw_surface(
     let (around, extent, page) = surround(&surface, extent, &camera, lines.axes.as_ref(), page)?;
     notes.extend(around.notes.iter().cloned());
     let (mut drawn, size) = match (grid, &lined) {
-        (Some(grid), _) => draw_grid(grid, &camera, lines, every)?,
+        (Some(grid), _) => draw_grid(grid, surface.places(), &camera, lines)?,
         (None, Some(lined)) => {
             let scale = page.mm_per_image_unit();
             let drawn = meshed::draw(lined, &camera, &meshed_options(lines), scale);
@@ -156,7 +162,7 @@ pub fn draw_surface(
     let scene = match lined {
         Some(lined) => Some(lined.scene),
         None if lines.keep_scene || !around.layout.wires().is_empty() => {
-            Some(self::lined(&surface, lines, every)?.scene)
+            Some(self::lined(&surface, lines)?.scene)
         }
         None => None,
     };
@@ -170,7 +176,19 @@ pub fn draw_surface(
     let is_ordered = grid.is_some() && !is_edge_on && drawing.n_points() > FEW_POINTS;
     let samples = surface.to_string();
     let scene = scene.filter(|_| lines.keep_scene);
-    Ok(SurfaceOutput { drawn, size, camera, page, extent, samples, notes, is_ordered, scene, ink })
+    Ok(SurfaceOutput {
+        drawn,
+        size,
+        camera,
+        page,
+        extent,
+        samples,
+        certificate,
+        notes,
+        is_ordered,
+        scene,
+        ink,
+    })
 }
 
 impl SurfaceOutput {
@@ -220,17 +238,13 @@ fn brief(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
-/// The surface as a scene, with every `every`-th grid line of a family and its level curves.
-fn lined(
-    surface: &SampledSurface,
-    lines: &SurfaceLines,
-    every: usize,
-) -> Result<LinedScene, SurfaceError> {
+/// The surface as a scene, with the chosen grid lines and level curves.
+fn lined(surface: &SampledSurface, lines: &SurfaceLines) -> Result<LinedScene, SurfaceError> {
     let lattices = surface.lattices();
     // Scattered points have no grid lines.
     let triangles = lines.mesh || lattices.is_empty() && lines.has_grid_lines();
-    let chosen =
-        LatticeLines { along_rows: lines.along_x, along_columns: lines.along_y, every, triangles };
+    let (along_rows, along_columns) = (lines.along_x, lines.along_y);
+    let chosen = LatticeLines { along_rows, along_columns, every: lines.every, triangles };
     let check = |n: u64| {
         if n > MAX_TRIANGLES { Err(SurfaceError::TooManyTriangles(n)) } else { Ok(()) }
     };
@@ -262,8 +276,8 @@ pub fn for_turning(
     surface: &Surface,
     lines: &SurfaceLines,
 ) -> Result<TurningSurface, SurfaceError> {
-    let sampled = surface.sample(1)?;
-    let lined = lined(&sampled, lines, lines.every)?;
+    let sampled = surface.sample()?;
+    let lined = lined(&sampled, lines)?;
     Ok(TurningSurface { lined, sampled })
 }
 

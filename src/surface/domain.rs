@@ -13,9 +13,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::grid::{Grid, GridError, check_ranges, check_size, evenly};
 use super::height_function::HeightFunction;
 use super::lined_mesh::{LatticeLines, LinedMesh};
-use super::{Grid, GridError};
+use super::places::Places;
 use crate::strokes::StrokeKind;
 use crate::surface::formula::Formula;
 
@@ -47,23 +48,26 @@ impl TrimmedGrid {
         y: (f64, f64),
         n: (usize, usize),
     ) -> Result<Self, GridError> {
+        check_size(n.0, n.1)?;
+        check_ranges(x, y)?;
         let function = HeightFunction::new(formula.clone(), 1.0);
         let domain = domain.map(|domain| HeightFunction::new(domain.clone(), 1.0));
-        Self::sample_function(&function, domain.as_ref(), x, y, n)
+        let (xs, ys) = (evenly(x.0, x.1, n.0), evenly(y.0, y.1, n.1));
+        Self::sample_at(&function, domain.as_ref(), xs, ys)
     }
 
-    /// The same for formulas in the coordinates of the drawn surface.
+    /// The same for formulas in the coordinates of the drawn surface, on given lines.
     ///
     /// # Errors
-    /// As [`Grid::sample`].
-    pub fn sample_function(
+    /// As [`Grid::sample_at`].
+    pub fn sample_at(
         function: &HeightFunction,
         domain: Option<&HeightFunction>,
-        x: (f64, f64),
-        y: (f64, f64),
-        n: (usize, usize),
+        xs: Vec<f64>,
+        ys: Vec<f64>,
     ) -> Result<Self, GridError> {
-        let whole = Grid::sample_function(function, x, y, n)?;
+        let n = (xs.len(), ys.len());
+        let whole = Grid::sample_at(function, xs, ys)?;
         let (xs, ys) = (whole.xs().to_vec(), whole.ys().to_vec());
         let mut zs = whole.zs().to_vec();
         if let Some(domain) = domain {
@@ -201,9 +205,20 @@ impl LinedMesh {
     /// Adds the part of a surface inside its domain, with grid lines up to the rim, and the rim as
     /// lines of kind boundary if any grid lines are drawn. O(samples).
     pub fn push_trimmed(&mut self, trimmed: &TrimmedGrid, lines: &LatticeLines) {
+        self.push_trimmed_at(trimmed, lines, None);
+    }
+
+    /// As [`push_trimmed`](Self::push_trimmed), of a grid on lines that are not all the surface's own.
+    pub(super) fn push_trimmed_at(
+        &mut self,
+        trimmed: &TrimmedGrid,
+        lines: &LatticeLines,
+        places: Option<&Places>,
+    ) {
         let TrimmedGrid { grid, rim } = trimmed;
         let base = self.positions.len() as u32;
-        self.push_grid(grid, lines);
+        self.push_grid_at(grid, lines, places);
+        let [columns, rows] = lines.drawn((grid.xs().len(), grid.ys().len()), places);
         let nx = grid.xs().len() as u32;
         let inside = |k: u32| !grid.zs()[k as usize].is_nan();
         let mut edges: Vec<[u32; 2]> = rim.keys().copied().collect();
@@ -220,10 +235,8 @@ impl LinedMesh {
             };
             numbers.insert(edge, number);
             let [a, b] = edge.map(|k| (k % nx, k / nx));
-            let every = lines.every.max(1) as u32;
-            let chosen = |k: u32, n: usize| k.is_multiple_of(every) || k + 1 == n as u32;
-            let along_row = a.1 == b.1 && lines.along_rows && chosen(a.1, grid.ys().len());
-            let along_column = a.0 == b.0 && lines.along_columns && chosen(a.0, grid.xs().len());
+            let along_row = a.1 == b.1 && rows[a.1 as usize];
+            let along_column = a.0 == b.0 && columns[a.0 as usize];
             if number != base + edge[0] && (along_row || along_column) {
                 self.push_line([base + edge[0], number], StrokeKind::Grid);
             }

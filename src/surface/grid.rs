@@ -125,12 +125,18 @@ pub fn evenly(from: f64, to: f64, n: usize) -> Vec<f64> {
     (0..n).map(|i| from + (to - from) * i as f64 / last).collect()
 }
 
-/// Evenly spaced values of the two parameters of a surface in space.
-pub(super) fn parameters(
-    u: (f64, f64),
-    v: (f64, f64),
-    samples: (usize, usize),
-) -> Result<(Vec<f64>, Vec<f64>), GridError> {
+/// Checks the ranges of x and y.
+pub(super) fn check_ranges(x: (f64, f64), y: (f64, f64)) -> Result<(), GridError> {
+    for (axis, (from, to)) in [('x', x), ('y', y)] {
+        if !(from < to && from.is_finite() && (to - from).is_finite()) {
+            return Err(GridError::Range { axis, from, to });
+        }
+    }
+    Ok(())
+}
+
+/// Checks the numbers of samples along the parameters of a surface in space.
+pub(super) fn check_parameters(samples: (usize, usize)) -> Result<(), GridError> {
     for (axis, found) in [('u', samples.0), ('v', samples.1)] {
         if found < 2 {
             return Err(GridError::TooFew { axis, found });
@@ -139,7 +145,7 @@ pub(super) fn parameters(
     if samples.0.checked_mul(samples.1).is_none_or(|n| n > MAX_SAMPLES) {
         return Err(GridError::TooMany { x: samples.0, y: samples.1 });
     }
-    Ok((evenly(u.0, u.1, samples.0), evenly(v.0, v.1, samples.1)))
+    Ok(())
 }
 
 /// The x and y of evenly spaced lines.
@@ -149,11 +155,7 @@ fn even_lines(
     n: (usize, usize),
 ) -> Result<(Vec<f64>, Vec<f64>), GridError> {
     check_size(n.0, n.1)?;
-    for (axis, (from, to)) in [('x', x), ('y', y)] {
-        if !(from < to && from.is_finite() && (to - from).is_finite()) {
-            return Err(GridError::Range { axis, from, to });
-        }
-    }
+    check_ranges(x, y)?;
     Ok((evenly(x.0, x.1, n.0), evenly(y.0, y.1, n.1)))
 }
 
@@ -210,8 +212,21 @@ impl Grid {
         n: (usize, usize),
     ) -> Result<Self, GridError> {
         let (xs, ys) = even_lines(x, y, n)?;
-        let mut zs = vec![0.0; n.0 * n.1];
-        zs.par_chunks_mut(n.0).zip(&ys).for_each(|(row, &y)| {
+        Self::sample_at(function, xs, ys)
+    }
+
+    /// Samples a function on given lines. O(samples), in parallel.
+    ///
+    /// # Errors
+    /// Places that do not rise, or too few or too many samples.
+    pub fn sample_at(
+        function: &HeightFunction,
+        xs: Vec<f64>,
+        ys: Vec<f64>,
+    ) -> Result<Self, GridError> {
+        check_size(xs.len(), ys.len())?;
+        let mut zs = vec![0.0; xs.len() * ys.len()];
+        zs.par_chunks_mut(xs.len()).zip(&ys).for_each(|(row, &y)| {
             function.heights(&xs, &vec![y; xs.len()], row);
         });
         Self::new(xs, ys, zs)
@@ -313,7 +328,7 @@ impl Grid {
     }
 }
 
-fn check_size(x: usize, y: usize) -> Result<(), GridError> {
+pub(super) fn check_size(x: usize, y: usize) -> Result<(), GridError> {
     for (axis, found) in [('x', x), ('y', y)] {
         if found < 2 {
             return Err(GridError::TooFew { axis, found });

@@ -4,7 +4,9 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::Grid;
+use super::formula::Axis;
 use super::height_function::HeightFunction;
+use super::places::Places;
 use super::split_cells::{Center, Splitting};
 use crate::classify::SelectedLine;
 use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
@@ -56,6 +58,18 @@ pub struct LatticeLines {
     pub triangles: bool,
 }
 
+impl LatticeLines {
+    /// For each column and for each row of a lattice whether its line is drawn.
+    pub(super) fn drawn(&self, n: (usize, usize), places: Option<&Places>) -> [Vec<bool>; 2] {
+        let of = |is_wanted: bool, n: usize, axis: Axis| match places {
+            _ if !is_wanted => vec![false; n],
+            Some(places) => places.drawn(axis, self.every),
+            None => (0..n).map(|k| k.is_multiple_of(self.every.max(1)) || k + 1 == n).collect(),
+        };
+        [of(self.along_columns, n.0, Axis::First), of(self.along_rows, n.1, Axis::Second)]
+    }
+}
+
 /// A [`LinedMesh`] prepared for any number of views.
 #[derive(Debug, Clone)]
 pub struct LinedScene {
@@ -83,13 +97,34 @@ impl LinedMesh {
 
     /// Adds the triangles and lines of a grid; the cells around a hole are left out.
     pub fn push_grid(&mut self, grid: &Grid, lines: &LatticeLines) {
+        self.push_grid_at(grid, lines, None);
+    }
+
+    /// As [`push_grid`](Self::push_grid), on lines that are not all the surface's own.
+    pub(super) fn push_grid_at(
+        &mut self,
+        grid: &Grid,
+        lines: &LatticeLines,
+        places: Option<&Places>,
+    ) {
         let points: Vec<DVec3> = (0..grid.zs().len() as u32).map(|k| grid.point(k)).collect();
-        self.push_lattice(grid.xs().len(), &points, lines);
+        self.push_lattice_at(grid.xs().len(), &points, lines, places);
     }
 
     /// Adds a lattice of points in space, given row by row with `n_columns` in each; a point that
     /// is not finite is a hole. Cells are cut along (i,j)–(i+1,j+1). O(points).
     pub fn push_lattice(&mut self, n_columns: usize, points: &[DVec3], lines: &LatticeLines) {
+        self.push_lattice_at(n_columns, points, lines, None);
+    }
+
+    /// As [`push_lattice`](Self::push_lattice), on lines that are not all the surface's own.
+    pub(super) fn push_lattice_at(
+        &mut self,
+        n_columns: usize,
+        points: &[DVec3],
+        lines: &LatticeLines,
+        places: Option<&Places>,
+    ) {
         // All edges of all triangles are to be those of the surface as it is drawn without levels.
         let levels = if lines.triangles { Vec::new() } else { self.split_at.clone() };
         let function = self.sheets.last().and_then(|sheet| sheet.function.clone());
@@ -152,8 +187,7 @@ impl LinedMesh {
                 }
             }
         }
-        let every = lines.every.max(1);
-        let chosen = |k: usize, n: usize| k.is_multiple_of(every) || k + 1 == n;
+        let [columns, rows] = lines.drawn((n_columns, n_rows), places);
         let mut push = |a: usize, b: usize| {
             if is_hole(a) || is_hole(b) {
                 return;
@@ -169,10 +203,10 @@ impl LinedMesh {
         };
         for k in 0..points.len() {
             let (i, j) = (k % n_columns, k / n_columns);
-            if lines.along_rows && i + 1 < n_columns && chosen(j, n_rows) {
+            if i + 1 < n_columns && rows[j] {
                 push(k, k + 1);
             }
-            if lines.along_columns && j + 1 < n_rows && chosen(i, n_columns) {
+            if j + 1 < n_rows && columns[i] {
                 push(k, k + n_columns);
             }
         }

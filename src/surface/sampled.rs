@@ -6,11 +6,12 @@ use glam::DVec3;
 
 use super::axis_scale::AxisScale;
 use super::domain::TrimmedGrid;
-use super::formula::Formula;
-use super::grid::{Grid, GridError, Holes, parameters};
+use super::formula::{Axis, Formula, JetGraph};
+use super::grid::{Grid, Holes, check_parameters, check_ranges, check_size};
 use super::height_function::HeightFunction;
 use super::lattice_extent::lattice_extent;
 use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
+use super::places::Places;
 use super::proportions::{check_positive, mapped};
 use super::sampling_error::SamplingError;
 use super::source::{Source, Surface};
@@ -20,6 +21,15 @@ use crate::extent::Extent;
 /// Rim points of two sheets at the same x and y are one point if their heights differ by at most this
 /// part of the height of both sheets.
 const RIM_TOLERANCE: f64 = 1e-6;
+
+/// The formulas of a sheet, ready to be enclosed.
+#[derive(Debug, Clone)]
+pub enum SheetJets {
+    /// z as a function of x and y.
+    Height(JetGraph),
+    /// x, y and z as functions of u and v.
+    Space([JetGraph; 3]),
+}
 
 /// A surface sampled at points. Its [`Display`](fmt::Display) says how many, for messages.
 #[derive(Debug, Clone)]
@@ -31,6 +41,10 @@ pub struct SampledSurface {
     /// The smallest and the largest value of each axis.
     ranges: [(f64, f64); 3],
     n_not_positive: usize,
+    /// What coordinates were multiplied by so that the box has its proportions.
+    factors: DVec3,
+    /// The lines of the lattice before that, if formulas were sampled.
+    places: Option<Places>,
 }
 
 #[derive(Debug, Clone)]
@@ -75,20 +89,67 @@ impl Lattice<'_> {
 }
 
 impl Surface {
-    /// Samples the surface; if it is given by formulas, with `refined` times as many cells along both
-    /// axes as it says itself. O(samples), in parallel.
+    /// Samples the surface on its own lines. O(samples), in parallel.
     ///
     /// # Errors
     /// See [`SamplingError`].
-    pub fn sample(&self, refined: usize) -> Result<SampledSurface, SamplingError> {
-        let finer = |n: usize| n.saturating_sub(1).saturating_mul(refined.max(1)).saturating_add(1);
-        let n = (finer(self.samples.0), finer(self.samples.1));
+    pub fn sample(&self) -> Result<SampledSurface, SamplingError> {
+        self.sample_at(self.places()?)
+    }
+
+    /// The surface's own lines, if formulas are sampled, in coordinates before any is multiplied.
+    ///
+    /// # Errors
+    /// A range that does not increase or has no logarithm, too few or too many samples.
+    pub(crate) fn places(&self) -> Result<Option<Places>, SamplingError> {
+        match &self.source {
+            Source::Formulas { .. } => {
+                let [x, y] = self.drawn_ranges()?;
+                check_size(self.samples.0, self.samples.1)?;
+                check_ranges(x, y)?;
+                Ok(Some(Places::evenly([x, y], self.samples.into())?))
+            }
+            Source::Parametric { u, v, .. } => {
+                check_parameters(self.samples)?;
+                Ok(Some(Places::evenly([*u, *v], self.samples.into())?))
+            }
+            Source::Grid(_) | Source::Triangles { .. } | Source::Lattice { .. } => Ok(None),
+        }
+    }
+
+    /// The formulas of each sheet ready to be enclosed: of z alone, or of x, y and z, in coordinates before
+    /// any is multiplied. None for what is given by points.
+    pub(crate) fn jets(&self) -> Vec<SheetJets> {
+        let scales = self.own_scales();
+        match &self.source {
+            Source::Formulas { formulas, .. } => {
+                formulas.iter().map(|z| SheetJets::Height(z.jets().scaled(scales))).collect()
+            }
+            Source::Parametric { formulas, .. } => {
+                let data = AxisScale::DATA;
+                let of = |k: usize| formulas[k].jets().scaled([data, data, scales[k]]);
+                vec![SheetJets::Space([of(0), of(1), of(2)])]
+            }
+            Source::Grid(_) | Source::Triangles { .. } | Source::Lattice { .. } => Vec::new(),
+        }
+    }
+
+    /// Samples the surface on these lines, if it is given by formulas. O(samples), in parallel.
+    ///
+    /// # Errors
+    /// See [`SamplingError`].
+    pub(crate) fn sample_at(
+        &self,
+        places: Option<Places>,
+    ) -> Result<SampledSurface, SamplingError> {
+        let on = |axis: Axis| places.as_ref().map_or(Vec::new(), |p| p.along(axis).to_vec());
+        let on = || (on(Axis::First), on(Axis::Second));
         let scales = self.own_scales();
         let mut n_not_positive = 0;
         let sheets = match &self.source {
-            Source::Formulas { formulas, domain: None } => self.everywhere(formulas, n)?,
+            Source::Formulas { formulas, domain: None } => self.everywhere(formulas, &on)?,
             Source::Formulas { formulas, domain: Some(domain) } => {
-                let grids = self.trimmed(formulas, Some(domain), n)?;
+                let grids = self.trimmed(formulas, Some(domain), &on)?;
                 if grids.iter().all(TrimmedGrid::is_whole) {
                     Samples::Grids(grids.iter().map(|g| g.grid().clone()).collect())
                 } else {
@@ -122,8 +183,8 @@ impl Surface {
                 n_not_positive = n;
                 self.turned(*n_columns, points)
             }
-            Source::Parametric { formulas, u, v } => {
-                let (n_columns, points) = lattice(formulas, *u, *v, n)?;
+            Source::Parametric { formulas, .. } => {
+                let (n_columns, points) = lattice(formulas, on());
                 let (points, n) = mapped(&points, &scales);
                 n_not_positive = n;
                 self.turned(n_columns, points)
@@ -134,7 +195,11 @@ impl Surface {
             _ => Vec::new(),
         };
         let ranges = [(0.0, 0.0); 3];
-        let mut surface = SampledSurface { sheets, formulas, scales, ranges, n_not_positive };
+        let is_turned = matches!(self.source, Source::Parametric { .. }) && self.is_turned();
+        let places = if is_turned { places.map(Places::turned) } else { places };
+        let factors = DVec3::ONE;
+        let mut surface =
+            SampledSurface { sheets, formulas, scales, ranges, n_not_positive, factors, places };
         if scales[2].is_log && !surface.formulas.is_empty() {
             surface.n_not_positive = surface.count_not_positive();
         }
@@ -155,9 +220,14 @@ impl Surface {
         Ok(surface)
     }
 
+    /// Whether one axis of the two is turned around.
+    fn is_turned(&self) -> bool {
+        self.reversed[0] != self.reversed[1]
+    }
+
     /// Rows of points, reversed if that keeps the upper side of the surface where it was.
     fn turned(&self, n_columns: usize, mut points: Vec<DVec3>) -> Samples {
-        if self.reversed[0] != self.reversed[1] {
+        if self.is_turned() {
             points.chunks_mut(n_columns.max(1)).for_each(<[DVec3]>::reverse);
         }
         Samples::Lattice { n_columns, points }
@@ -167,13 +237,15 @@ impl Surface {
     fn everywhere(
         &self,
         formulas: &[Formula],
-        n: (usize, usize),
+        on: &impl Fn() -> (Vec<f64>, Vec<f64>),
     ) -> Result<Samples, SamplingError> {
-        let [x, y] = self.drawn_ranges()?;
-        let sample = |formula: &Formula| Grid::sample_function(&self.function(formula), x, y, n);
+        let sample = |formula: &Formula| {
+            let (xs, ys) = on();
+            Grid::sample_at(&self.function(formula), xs, ys)
+        };
         let grids = formulas.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         if grids.len() == 2 && grids.iter().any(|grid| grid.holes() != Holes::None) {
-            let trimmed = self.trimmed(formulas, None, n)?;
+            let trimmed = self.trimmed(formulas, None, on)?;
             if let [one, other] = &trimmed[..]
                 && one.shares_rim(other, rim_tolerance(&trimmed))
             {
@@ -187,14 +259,14 @@ impl Surface {
         &self,
         formulas: &[Formula],
         domain: Option<&Formula>,
-        n: (usize, usize),
+        on: &impl Fn() -> (Vec<f64>, Vec<f64>),
     ) -> Result<Vec<TrimmedGrid>, SamplingError> {
-        let [x, y] = self.drawn_ranges()?;
         let [of_x, of_y, _] = self.own_scales();
         let domain = domain
             .map(|domain| HeightFunction::scaled(domain.clone(), [of_x, of_y, AxisScale::DATA]));
         let sample = |formula: &Formula| {
-            TrimmedGrid::sample_function(&self.function(formula), domain.as_ref(), x, y, n)
+            let (xs, ys) = on();
+            TrimmedGrid::sample_at(&self.function(formula), domain.as_ref(), xs, ys)
         };
         Ok(formulas.iter().map(sample).collect::<Result<_, _>>()?)
     }
@@ -212,14 +284,8 @@ impl Surface {
     }
 }
 
-fn lattice(
-    formulas: &[Formula; 3],
-    u: (f64, f64),
-    v: (f64, f64),
-    n: (usize, usize),
-) -> Result<(usize, Vec<DVec3>), GridError> {
-    let (us, vs) = parameters(u, v, n)?;
-    let mut points = Vec::with_capacity(n.0 * n.1);
+fn lattice(formulas: &[Formula; 3], (us, vs): (Vec<f64>, Vec<f64>)) -> (usize, Vec<DVec3>) {
+    let mut points = Vec::with_capacity(us.len() * vs.len());
     for v in vs {
         let mut rows = [(); 3].map(|()| vec![0.0; us.len()]);
         for (formula, row) in formulas.iter().zip(&mut rows) {
@@ -228,7 +294,7 @@ fn lattice(
         points.extend((0..us.len()).map(|i| DVec3::new(rows[0][i], rows[1][i], rows[2][i])));
     }
     close_seams(us.len(), &mut points);
-    Ok((us.len(), points))
+    (us.len(), points)
 }
 
 /// Samples whose rims meet up to rounding are joined there if there are two of them.
@@ -249,6 +315,16 @@ fn rim_tolerance(grids: &[TrimmedGrid]) -> f64 {
 }
 
 impl SampledSurface {
+    /// The lines of the lattice, if formulas were sampled, in coordinates before any was multiplied.
+    pub(crate) fn places(&self) -> Option<&Places> {
+        self.places.as_ref()
+    }
+
+    /// What coordinates were multiplied by so that the box has its proportions.
+    pub(crate) fn factors(&self) -> DVec3 {
+        self.factors
+    }
+
     /// How values became coordinates along x, y and z.
     pub fn scales(&self) -> &[AxisScale; 3] {
         &self.scales
@@ -335,6 +411,7 @@ impl SampledSurface {
             }
         }
         (0..3).for_each(|k| self.scales[k].factor *= factors[k]);
+        self.factors *= factors;
     }
 
     /// Its triangles with these lines, split for level curves at `levels` (see
@@ -342,6 +419,7 @@ impl SampledSurface {
     /// if triangles are to have them.
     pub fn lined(&self, lines: &LatticeLines, levels: &[f64]) -> LinedMesh {
         let mut mesh = LinedMesh::for_levels(levels);
+        let places = self.places.as_ref();
         let is_traced = !levels.is_empty() && !lines.triangles;
         let formulas = if is_traced { &self.formulas[..] } else { &[] };
         let function = |sheet: usize| {
@@ -352,19 +430,21 @@ impl SampledSurface {
             Samples::Grids(grids) => {
                 for (sheet, grid) in grids.iter().enumerate() {
                     mesh.begin_sheet(function(sheet));
-                    mesh.push_grid(grid, lines);
+                    mesh.push_grid_at(grid, lines, places);
                 }
             }
             Samples::Trimmed { grids, .. } => {
                 for (sheet, grid) in grids.iter().enumerate() {
                     mesh.begin_sheet(function(sheet));
-                    mesh.push_trimmed(grid, lines);
+                    mesh.push_trimmed_at(grid, lines, places);
                 }
             }
             Samples::Triangles { points, triangles } => {
                 mesh.push_triangles(points, triangles, lines.triangles);
             }
-            Samples::Lattice { n_columns, points } => mesh.push_lattice(*n_columns, points, lines),
+            Samples::Lattice { n_columns, points } => {
+                mesh.push_lattice_at(*n_columns, points, lines, places);
+            }
         }
         mesh
     }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::formula::{Formula, FormulaError, Variables};
-use super::grid::{Grid, GridError, parameters};
+use super::grid::{Grid, GridError, check_parameters, evenly};
 use super::lined_mesh::close_seams;
 #[cfg(feature = "points")]
 use super::points::{PointsError, delaunay};
@@ -22,7 +22,7 @@ pub const DEFAULT_SAMPLES: usize = 81;
 /// use hiddenline::{Grid, Surface};
 ///
 /// let hat = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0).samples(101, 101);
-/// assert_eq!(hat.sample(1)?.to_string(), "101 × 101 samples");
+/// assert_eq!(hat.sample()?.to_string(), "101 × 101 samples");
 ///
 /// // Two sheets over a disc.
 /// let ball = Surface::formula("sqrt(9 - r^2)")?.sheet("-sqrt(9 - r^2)")?.domain("r <= 3")?;
@@ -151,7 +151,8 @@ impl Surface {
         samples: (usize, usize),
         point: impl Fn(f64, f64) -> DVec3,
     ) -> Result<Self, GridError> {
-        let (us, vs) = parameters(u, v, samples)?;
+        check_parameters(samples)?;
+        let (us, vs) = (evenly(u.0, u.1, samples.0), evenly(v.0, v.1, samples.1));
         let mut points = Vec::with_capacity(us.len() * vs.len());
         for &v in &vs {
             points.extend(us.iter().map(|&u| point(u, v)));

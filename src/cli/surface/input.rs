@@ -207,7 +207,7 @@ impl SurfaceInput {
     pub(in crate::cli) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         let mut warnings = Vec::new();
         let surface = self.read(&mut warnings)?;
-        let surface = surface.sample(1).map_err(|error| self.sampling_error(&error))?;
+        let surface = surface.sample().map_err(|error| self.sampling_error(&error))?;
         let no_lines =
             LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
         let mesh = surface.lined(&no_lines, &[]).into_mesh()?;

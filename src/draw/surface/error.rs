@@ -1,7 +1,9 @@
 //! Why a surface cannot be drawn, and what is worth knowing about a drawing.
 
+use glam::DVec2;
 use thiserror::Error;
 
+use super::certificate::Certificate;
 use crate::camera::framing::ViewError;
 use crate::engines::surface::HorizonError;
 use crate::model::mesh::MeshError;
@@ -93,14 +95,9 @@ pub enum NoLevels {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SurfaceNote {
-    /// Lines are farther from the function than asked for, even with the finest samples.
-    #[error(
-        "lines are up to {deviation_mm:.1} mm off the function, at kinks, jumps or where it is steep"
-    )]
-    OffFunction {
-        /// How far, in millimeters on paper.
-        deviation_mm: f64,
-    },
+    /// Lines may be farther from the function than asked for, even with the finest samples.
+    #[error("{}, first near {}", .0, near(.0.first))]
+    Uncertified(Certificate),
     /// Two sheets were joined at their common rim.
     #[error("both sheets end at the same rim: {0} rim points took the mean height of the two")]
     RimsJoined(usize),
@@ -122,6 +119,15 @@ pub enum SurfaceNote {
     /// The box around the surface reaches in front of the near plane.
     #[error("no axes are drawn, since the eye is too close to the box around the surface")]
     NoAxes,
+}
+
+fn near(place: Option<DVec2>) -> String {
+    place.map_or_else(String::new, |p| format!("({}, {})", brief(p.x), brief(p.y)))
+}
+
+/// A number with at most three significant digits.
+fn brief(number: f64) -> f64 {
+    format!("{number:.2e}").parse().unwrap_or(number)
 }
 
 fn list(letters: &[char]) -> String {

@@ -9,7 +9,7 @@ use crate::draw::{DrawOutput, MeshSize};
 use crate::engines::edge::LineCounts;
 use crate::engines::surface::floating_horizon::Family;
 use crate::engines::surface::{SurfaceSide, floating_horizon, max_min};
-use crate::surface::{Grid, Holes, SampledSurface};
+use crate::surface::{Grid, Holes, Places, SampledSurface};
 use crate::timing::{Seconds, timed};
 
 /// The grid, if it is all there is and an engine for grids is to draw it.
@@ -45,15 +45,15 @@ pub(super) fn grid_to_draw<'a>(
     }
 }
 
-/// Draws the grid lines of `grid`, every `every`-th of a family.
+/// Draws grid lines of `grid`; `places` says which of its lines count, if not all do.
 ///
 /// # Errors
 /// The engine cannot draw the grid.
 pub(super) fn draw_grid(
     grid: &Grid,
+    places: Option<&Places>,
     camera: &Camera,
     options: &SurfaceLines,
-    every: usize,
 ) -> Result<(DrawOutput, MeshSize), SurfaceError> {
     let mut seconds = Seconds::default();
     let (engine, pieces) = timed(&mut seconds.visibility, || -> Result<_, SurfaceError> {
@@ -66,8 +66,8 @@ pub(super) fn draw_grid(
         })
     })?;
     let drawing = timed(&mut seconds.strokes, || {
-        let (along_x, along_y) = (options.along_x, options.along_y);
-        let lines = GridLines { along_x, along_y, every, side: None, separate: options.exact };
+        let SurfaceLines { along_x, along_y, every, exact: separate, .. } = *options;
+        let lines = GridLines { along_x, along_y, every, places, side: None, separate };
         if !options.underside {
             return strokes(grid, &pieces, camera, &lines);
         }

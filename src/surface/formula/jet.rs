@@ -109,6 +109,21 @@ impl Jet {
         Self { value: -self.value, first: -self.first, second: -self.second, ..self }
     }
 
+    /// A multiple.
+    pub(super) fn times(self, factor: f64) -> Self {
+        let scaled = |interval: Interval| interval.times(factor);
+        match factor {
+            1.0 => self,
+            -1.0 => self.negate(),
+            _ => Self {
+                value: scaled(self.value),
+                first: scaled(self.first),
+                second: scaled(self.second),
+                ..self
+            },
+        }
+    }
+
     pub(super) fn add(self, other: Self) -> Self {
         Self {
             value: self.value + other.value,

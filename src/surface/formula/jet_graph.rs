@@ -9,15 +9,19 @@ use std::mem::Discriminant;
 
 use rustc_hash::FxHashMap;
 
+use super::function::Function;
 use super::interval::Interval;
 use super::jet::{Comparison, Jet};
 use super::tape::{Op, Tape};
+use crate::surface::AxisScale;
 
 /// A formula that can be enclosed.
 #[derive(Debug, Clone)]
 pub struct JetGraph {
     /// Operands come before what they are used in; the last node is the formula.
     nodes: Vec<Node>,
+    /// How both variables and the value become coordinates.
+    scales: [AxisScale; 3],
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -79,20 +83,43 @@ impl JetGraph {
             });
             stack.push(id);
         }
-        Self { nodes }
+        Self { nodes, scales: [AxisScale::DATA; 3] }
+    }
+
+    /// The same in coordinates: of both variables, and of the value.
+    #[must_use]
+    pub fn scaled(self, scales: [AxisScale; 3]) -> Self {
+        Self { scales, ..self }
+    }
+
+    /// The value of a variable, from its coordinate.
+    fn value_of(&self, variable: usize, drawn: Jet) -> Jet {
+        let AxisScale { factor, is_log } = self.scales[variable];
+        let value = drawn.times(1.0 / factor);
+        if is_log { Jet::constant(10.0).power(value).checked() } else { value }
+    }
+
+    /// The coordinate of a value.
+    fn drawn(&self, value: Jet) -> Jet {
+        let AxisScale { factor, is_log } = self.scales[2];
+        let value = if is_log { value.apply(Function::Log10).checked() } else { value };
+        value.times(factor)
     }
 
     /// Encloses the formula over a box along a direction, given as its parts along both variables.
     ///
     /// `room` is kept from call to call so that nothing is allocated. O(operations).
     pub fn over(&self, a: Interval, b: Interval, direction: [f64; 2], room: &mut Vec<Jet>) -> Jet {
-        let variables = [Jet::variable(a, direction[0]), Jet::variable(b, direction[1])];
+        let variables = [
+            self.value_of(0, Jet::variable(a, direction[0])),
+            self.value_of(1, Jet::variable(b, direction[1])),
+        ];
         room.clear();
         for node in &self.nodes {
             let jet = node.jet(room, variables);
             room.push(jet);
         }
-        room.last().copied().unwrap_or(Jet::NOWHERE)
+        self.drawn(room.last().copied().unwrap_or(Jet::NOWHERE))
     }
 
     /// Prepares to enclose the formula along lines on which only one variable changes.
@@ -132,15 +159,15 @@ impl JetLine<'_> {
         for &k in &self.moving {
             self.jets[k as usize] = self.graph.nodes[k as usize].jet(&self.jets, variables);
         }
-        self.jets.last().copied().unwrap_or(Jet::NOWHERE)
+        self.graph.drawn(self.jets.last().copied().unwrap_or(Jet::NOWHERE))
     }
 
     fn variables(&self, range: Interval) -> [Jet; 2] {
         let moving = Jet::variable(range, 1.0);
         let fixed = Jet::variable(Interval::point(self.at), 0.0);
         match self.axis {
-            Axis::First => [moving, fixed],
-            Axis::Second => [fixed, moving],
+            Axis::First => [self.graph.value_of(0, moving), self.graph.value_of(1, fixed)],
+            Axis::Second => [self.graph.value_of(0, fixed), self.graph.value_of(1, moving)],
         }
     }
 }

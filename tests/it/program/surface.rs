@@ -350,9 +350,9 @@ fn lines_off_the_function_and_lines_that_flow_together_are_told() {
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
     let off = warnings(&["sin(40*x)", "--aspect", "data", "--z-scale", "2", "--lines", "x"]);
-    assert!(off.contains("mm off the function"), "{off}");
+    assert!(off.contains("pieces of lines are not certified, first near ("), "{off}");
     let smooth = warnings(&["x*y"]);
-    assert!(!smooth.contains("off the function"), "{smooth}");
+    assert!(!smooth.contains("not certified"), "{smooth}");
     let crowded = warnings(&["x*y", "--samples", "600", "--smoothness", "0"]);
     assert!(crowded.contains("lines flow into each other; --every "), "{crowded}");
     let every = crowded.split("--every ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();

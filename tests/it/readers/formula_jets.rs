@@ -239,7 +239,10 @@ fn check_slopes(
     // Rounding of the samples, and of t times a step that is as large as the place.
     let size = 1.0 + jet.value.largest().min(1e30);
     let drift = if jet.first.is_bounded() { jet.first.largest() } else { return };
-    let place = 1e-15 * (a.largest() + b.largest()) / a.width().max(b.width()).max(1e-300);
+    let rounded = |range: Interval, step: f64| {
+        if step == 0.0 { 0.0 } else { 1e-15 * range.largest() / step.abs() }
+    };
+    let place = rounded(a, along[0]) + rounded(b, along[1]);
     let error = 1e-14 * size + drift * place;
     let slope = (after - here) / h;
     assert!(
