@@ -46,13 +46,17 @@ impl fmt::Display for Certificate {
         } else {
             let Self { uncertified_chords, chords, .. } = self;
             write!(f, "{uncertified_chords} of {chords} pieces of lines are not certified")?;
-        }
-        if self.uncertified_cells > 0 {
-            let Self { uncertified_cells, cells, .. } = self;
-            write!(f, "; {uncertified_cells} of {cells} cells between lines are not certified")?;
+            if let Some(p) = self.first {
+                write!(f, ", first near ({}, {})", brief(p.x), brief(p.y))?;
+            }
         }
         Ok(())
     }
+}
+
+/// A number with at most three significant digits.
+fn brief(number: f64) -> f64 {
+    format!("{number:.2e}").parse().unwrap_or(number)
 }
 
 /// More samples that lines need.

@@ -1,6 +1,5 @@
 //! Why a surface cannot be drawn, and what is worth knowing about a drawing.
 
-use glam::DVec2;
 use thiserror::Error;
 
 use super::certificate::Certificate;
@@ -96,7 +95,7 @@ pub enum NoLevels {
 #[non_exhaustive]
 pub enum SurfaceNote {
     /// Lines may be farther from the function than asked for, even with the finest samples.
-    #[error("{}, first near {}", .0, near(.0.first))]
+    #[error("{0}")]
     Uncertified(Certificate),
     /// Two sheets were joined at their common rim.
     #[error("both sheets end at the same rim: {0} rim points took the mean height of the two")]
@@ -119,15 +118,6 @@ pub enum SurfaceNote {
     /// The box around the surface reaches in front of the near plane.
     #[error("no axes are drawn, since the eye is too close to the box around the surface")]
     NoAxes,
-}
-
-fn near(place: Option<DVec2>) -> String {
-    place.map_or_else(String::new, |p| format!("({}, {})", brief(p.x), brief(p.y)))
-}
-
-/// A number with at most three significant digits.
-fn brief(number: f64) -> f64 {
-    format!("{number:.2e}").parse().unwrap_or(number)
 }
 
 fn list(letters: &[char]) -> String {

@@ -240,7 +240,7 @@ fn check_slopes(
     let size = 1.0 + jet.value.largest().min(1e30);
     let drift = if jet.first.is_bounded() { jet.first.largest() } else { return };
     let rounded = |range: Interval, step: f64| {
-        if step == 0.0 { 0.0 } else { 1e-15 * range.largest() / step.abs() }
+        if step == 0.0 { 0.0 } else { 1e-15 * range.largest() / step.abs().max(1e-300) }
     };
     let place = rounded(a, along[0]) + rounded(b, along[1]);
     let error = 1e-14 * size + drift * place;
