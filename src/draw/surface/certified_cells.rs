@@ -1,8 +1,9 @@
 //! The triangles between lines: how far the surface that hides is from the function.
 //!
-//! Over a cell of hx × hy, cut along either diagonal, |f − triangle| ≤ (hx² sup|f_xx| + 2 hx hy sup|f_xy|
-//! + hy² sup|f_yy|)/8 (D. Filip, R. Magedson and R. Markot, "Surface algorithms using bounds on
-//! derivatives", CAGD 3, 1986). Jets along both sides and the diagonal of the cell give all three terms.
+//! Over a cell of hx × hy, cut along either diagonal, |f − triangle| is at most
+//! (hx² sup|f_xx| + 2 hx hy sup|f_xy| + hy² sup|f_yy|)/8 (D. Filip, R. Magedson and R. Markot, "Surface
+//! algorithms using bounds on derivatives", CAGD 3, 1986). Jets along both sides and the diagonal of the
+//! cell give all three terms.
 
 use std::ops::Range;
 

@@ -196,6 +196,7 @@ impl Formula {
     }
 
     /// The formula ready to be enclosed over boxes. O(operations).
+    #[doc(hidden)]
     pub fn jets(&self) -> JetGraph {
         JetGraph::new(&self.tape)
     }
