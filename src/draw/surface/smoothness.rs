@@ -64,8 +64,7 @@ pub(super) fn sample(
     let mut refined: Option<SampledSurface> = None;
     let mut n_jets = 0;
     for _ in 0..MOST_SEARCHES {
-        let certifier =
-            Certifier { sheets: &sheets, sampled: &own, factors, paper: &paper, lines };
+        let certifier = Certifier { sheets: &sheets, sampled: &own, factors, paper: &paper, lines };
         let (certificate, needs) = certifier.certify(true);
         n_jets += certificate.jets;
         if needs.are_none() {
@@ -87,8 +86,7 @@ pub(super) fn sample(
     let camera = view.camera(sampled.bounds())?;
     let paper = seen(&sampled, &camera);
     let factors = sampled.factors();
-    let certifier =
-        Certifier { sheets: &sheets, sampled: &sampled, factors, paper: &paper, lines };
+    let certifier = Certifier { sheets: &sheets, sampled: &sampled, factors, paper: &paper, lines };
     let (mut certificate, _) = certifier.certify(false);
     certifier.certify_cells(&mut certificate);
     certificate.jets += n_jets;

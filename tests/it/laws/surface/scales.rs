@@ -12,7 +12,7 @@ fn of(text: &str) -> Surface {
 }
 
 fn sampled(surface: &Surface) -> SampledSurface {
-    surface.sample(1).expect("samples")
+    surface.sample().expect("samples")
 }
 
 fn size(surface: &Surface) -> DVec3 {
@@ -124,7 +124,7 @@ fn values_without_a_logarithm_are_holes_and_are_counted() {
     let lines = SurfaceLines { smoothness_mm: 0.0, ..SurfaceLines::default() };
     let drawing = draw_surface(&surface, &View::default(), &lines, &page).expect("a drawing");
     assert!(drawing.notes.contains(&SurfaceNote::NotPositive(18)), "{:?}", drawing.notes);
-    let on_x = of("x").log([true, false, false]).sample(1);
+    let on_x = of("x").log([true, false, false]).sample();
     assert_eq!(on_x.err(), Some(SamplingError::NotPositive { axis: 'x', from: -5.0 }));
 }
 
