@@ -6,8 +6,10 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use hiddenline::stages::axes::{Axes, AxesBox};
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
+use hiddenline::stages::draw::surface::surround;
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::engines::face::{FaceEngine, FaceError, Prepared};
 use hiddenline::stages::extent::Extent;
@@ -35,6 +37,7 @@ use super::paper::{Run, placed};
 use super::progress::Progress;
 use super::scene::Subject;
 use super::smooth::{SmoothArgs, Smoothing};
+use super::surface::{AxesArgs, axes_error, noted};
 use super::{Refused, config, source, values};
 
 const EXAMPLES: &str = "\
@@ -88,6 +91,8 @@ pub(super) struct FillArgs {
     #[command(flatten)]
     hatch: HatchArgs,
     #[command(flatten)]
+    axes: AxesArgs,
+    #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
     output: OutputArgs,
@@ -125,6 +130,8 @@ pub(super) struct Job {
     edges: Option<DrawOptions>,
     /// What is hatched on top.
     hatch: Option<HatchOptions>,
+    /// What is drawn around a surface.
+    axes: Option<Axes>,
     /// Whether hidden edges are painted over instead of left out.
     paints_over: bool,
     page: PageOptions,
@@ -136,7 +143,7 @@ impl FillArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(super) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { input, smooth, camera, areas, edges, hatch, page, output } = self;
+        let Self { input, smooth, camera, areas, edges, hatch, axes, page, output } = self;
         let input = input.input(DEFAULT_SAMPLES)?.in_unit(page.given_unit_mm());
         let mut output = output.options(false)?;
         output.warnings.extend(hatch.without_effect(false, &[]));
@@ -190,6 +197,7 @@ impl FillArgs {
             turntable: areas.turntable,
             edges: (!edges.no_edges).then_some(lines),
             hatch,
+            axes: axes.axes(pen_width_mm)?.filter(|_| areas.turntable.is_none()),
             paints_over: areas.white,
             page: page_options,
             pen_width_mm,
@@ -214,6 +222,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     )?;
     // Without --unit the page was made for millimeters.
     let page = page::in_unit(job.page, notes.unit_mm.unwrap_or(1.0));
+    let bounds = notes.axes_box;
     run.notes.add(notes);
     let mut fill = job.fill.clone();
     for path in job.input.models() {
@@ -226,7 +235,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     run.stats.engine = prepared.engine().name().into();
     run.stats.count(MeshSize::of(&scene));
     let Some(n) = job.turntable else {
-        let picture = Picture { job, page, scene: &scene, prepared: &prepared, fill, frame: None };
+        let picture =
+            Picture { job, page, scene: &scene, prepared: &prepared, fill, frame: None, bounds };
         return picture.write(&camera, run, job.output.path.as_deref());
     };
     let Run {
@@ -235,7 +245,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     drop(progress);
     let cameras = camera.turntable(n.into())?;
     let frame = Some(scene.extent_of_views(&cameras));
-    let picture = Picture { job, page, scene: &scene, prepared: &prepared, fill, frame };
+    let picture = Picture { job, page, scene: &scene, prepared: &prepared, fill, frame, bounds };
     for (number, camera) in (1..).zip(&cameras) {
         let notes = std::mem::take(&mut notes);
         let progress = Progress::new(output.quiet);
@@ -266,6 +276,8 @@ struct Picture<'a> {
     fill: FillOptions,
     /// What is fitted to the page; `None` for what the camera sees.
     frame: Option<Extent>,
+    /// What axes go around.
+    bounds: Option<AxesBox>,
 }
 
 impl Picture<'_> {
@@ -279,7 +291,19 @@ impl Picture<'_> {
         run.progress.stage("filling");
         let mut options = self.fill.clone();
         let extent = self.frame.unwrap_or_else(|| scene.extent(camera));
-        let page = placed(&extent, camera, page)?;
+        let around = match job.axes.as_ref().zip(self.bounds.as_ref()) {
+            Some((axes, bounds)) => {
+                let around = surround(bounds, extent, camera, Some(axes), page);
+                let (around, _, page) = around.map_err(|error| axes_error(&error))?;
+                run.notes.warnings.extend(around.notes.iter().map(noted));
+                Some((around, page))
+            }
+            None => None,
+        };
+        let page = match &around {
+            Some((_, page)) => *page,
+            None => placed(&extent, camera, page)?,
+        };
         options.settings.leaf = Some(job.leaf_mm / page.mm_per_image_unit());
         let filled: Filled = timed(&mut run.stats.seconds.visibility, || match &job.edges {
             Some(edges) if job.paints_over => {
@@ -308,6 +332,9 @@ impl Picture<'_> {
                 hatch(scene, camera, options, &lines, &paper)
             });
             edges.append(&hatched.map_err(|error| hatching::with_remedy(&error))?);
+        }
+        if let Some((around, _)) = around {
+            edges.append(&around.with_wires(scene, camera));
         }
         run.stats.counts.fill = filled.work;
         run.stats.engine = filled.engine.name().into();

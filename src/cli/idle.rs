@@ -19,6 +19,7 @@ struct Rule {
 
 const DRAWINGS: &[&str] = &["draw", "surface", "fill"];
 const SCENES: &[&str] = &["draw", "surface", "fill", "preview"];
+const PLOTS: &[&str] = &["surface", "fill"];
 const MESHES: &[&str] = &["surface", "fill", "preview"];
 /// Options for strokes, which filled areas alone do not have.
 const FOR_STROKES: [&str; 11] = [
@@ -33,6 +34,19 @@ const FOR_STROKES: [&str; 11] = [
     "split-distance",
     "split-overlap",
     "machine",
+];
+
+/// Options for axes, which `fill` draws around surfaces.
+const FOR_AXES: [&str; 9] = [
+    "axes",
+    "title",
+    "no-axes",
+    "box-front",
+    "z-axis",
+    "tick-step",
+    "ticks-pi",
+    "axis-titles",
+    "text-height",
 ];
 
 const RULES: &[Rule] = &[
@@ -71,7 +85,7 @@ const RULES: &[Rule] = &[
     Rule { option: "v", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule {
         option: "box-front",
-        commands: &["surface"],
+        commands: PLOTS,
         is_idle: |c| !c.has("axes", &["box"]),
         reason: "without --axes box",
     },
@@ -81,10 +95,10 @@ const RULES: &[Rule] = &[
         is_idle: is_frame,
         reason: "with --axes frame",
     },
-    Rule { option: "z-axis", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
-    Rule { option: "tick-step", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
-    Rule { option: "ticks-pi", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
-    Rule { option: "text-height", commands: &["surface"], is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "z-axis", commands: PLOTS, is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "tick-step", commands: PLOTS, is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "ticks-pi", commands: PLOTS, is_idle: has_no_axes, reason: NO_AXES },
+    Rule { option: "text-height", commands: PLOTS, is_idle: has_no_axes, reason: NO_AXES },
     Rule {
         option: "every",
         commands: &["surface"],
@@ -140,6 +154,7 @@ const RULES: &[Rule] = &[
 const PARALLEL: &str = "on an orthographic projection";
 const EXACT: &str = "with --exact, which leaves lines as they are";
 const NO_PATCH: &str = "without --parametric";
+const ON_MODELS: &str = "on models; axes are for surfaces";
 const NO_AXES: &str = "without axes";
 const DATA: &str = "on a picture of depths or normals";
 
@@ -166,6 +181,16 @@ impl Choices<'_> {
         let values = self.0.try_get_raw(&id).ok().flatten().into_iter().flatten();
         let mut names_in = values.filter_map(|value| value.to_str()).flat_map(|v| v.split(','));
         names_in.any(|value| names.contains(&value))
+    }
+
+    /// Whether models are drawn, no surface.
+    fn is_model(&self) -> bool {
+        let surfaces = ["expression", "grid", "points", "parametric"];
+        surfaces.iter().all(|name| !self.is_present(name))
+    }
+
+    fn is_present(&self, id: &str) -> bool {
+        self.0.try_get_raw(id).ok().flatten().is_some_and(|values| values.len() > 0)
     }
 
     fn is_parallel(&self) -> bool {
@@ -206,14 +231,19 @@ pub(super) fn warnings(command: &str, matches: &ArgMatches) -> Vec<String> {
     let is_typed = |option: &str| config::is_typed(&format!("--{option}"));
     let mut warnings = Vec::new();
     let mut warn = |option: &str, reason: &str| {
-        if is_typed(option) {
-            warnings.push(format!("--{option} has no effect {reason}"));
+        let start = format!("--{option} has no effect ");
+        if is_typed(option) && !warnings.iter().any(|said: &String| said.starts_with(&start)) {
+            warnings.push(format!("{start}{reason}"));
         }
     };
     for rule in RULES.iter().filter(|rule| rule.commands.contains(&command)) {
         if (rule.is_idle)(&choices) {
             warn(rule.option, rule.reason);
         }
+    }
+    if command == "fill" && (choices.is_model() || choices.is_given("turntable")) {
+        let reason = if choices.is_model() { ON_MODELS } else { "with --turntable" };
+        FOR_AXES.iter().for_each(|option| warn(option, reason));
     }
     if command == "fill" && choices.is_set("no-edges") {
         FOR_STROKES.iter().for_each(|option| warn(option, "with --no-edges"));

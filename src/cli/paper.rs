@@ -5,6 +5,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::time::Instant;
 
+use hiddenline::stages::axes::AxesBox;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::optimize::estimate::PenWork;
@@ -33,6 +34,8 @@ pub(super) struct Notes {
     pub(super) summary: String,
     /// Millimeters in a model unit, where a model says so and --unit does not.
     pub(super) unit_mm: Option<f64>,
+    /// What axes go around, if a surface was read.
+    pub(super) axes_box: Option<AxesBox>,
 }
 
 impl Notes {

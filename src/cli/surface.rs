@@ -22,6 +22,7 @@ use hiddenline::stages::timing::timed;
 use hiddenline::stages::write::Format;
 
 pub(super) use self::args::SurfaceArgs;
+pub(super) use self::axes_args::AxesArgs;
 pub(super) use self::input::SurfaceInput;
 use self::input::with_samples;
 pub(super) use self::input_args::SurfaceInputArgs;
@@ -120,7 +121,6 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
     match error {
         SurfaceError::Sampling(error) => job.sheets.sampling_error(error),
         SurfaceError::View(error) => with_remedy(error),
-        SurfaceError::Page(error) => page_error(error),
         SurfaceError::NoCells => with_samples(error),
         SurfaceError::TooManyTriangles(_) => format!("{error}; give fewer --samples or --levels"),
         SurfaceError::NoLevels(none) => {
@@ -129,7 +129,7 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
         SurfaceError::OneFamily => format!("{error}: give --lines x or --lines y"),
         SurfaceError::OneGrid => format!("{error}: give --engine roberts or auto"),
         SurfaceError::MaxMin | SurfaceError::NearPlane => format!("{error}: give --engine auto"),
-        SurfaceError::Frame => format!("{error}: give --view top or other --axes"),
+        SurfaceError::Page(_) | SurfaceError::Frame => axes_error(error),
         SurfaceError::Order => "--order needs one surface z = f(x, y) over a rectangle without \
                                 holes, drawn with grid lines only: leave --order out"
             .to_owned(),
@@ -137,8 +137,17 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
     }
 }
 
+/// Why axes cannot be drawn, with the options that mend it.
+pub(super) fn axes_error(error: &SurfaceError) -> String {
+    match error {
+        SurfaceError::Page(error) => page_error(error),
+        SurfaceError::Frame => format!("{error}: give --view top or other --axes"),
+        _ => error.to_string(),
+    }
+}
+
 /// What is worth knowing about a drawing, with the options that help.
-fn noted(note: &SurfaceNote) -> String {
+pub(super) fn noted(note: &SurfaceNote) -> String {
     match note {
         SurfaceNote::Uncertified(_) => format!("{note}: more --samples"),
         SurfaceNote::NoLevels(none) => without_levels(none),

@@ -19,11 +19,11 @@ mod smoothness;
 
 use glam::{DVec2, DVec3};
 
+pub use self::around::{Around, axes_box, surround};
 pub use self::certificate::Certificate;
 pub use self::error::{MAX_TRIANGLES, NoLevels, SurfaceError, SurfaceNote};
 pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLines};
 
-use self::around::surround;
 use self::grid::{draw_grid, grid_to_draw};
 use self::smoothness::{SmoothSurface, sample};
 use super::turning::{TurningLines, surface_turning_lines};
@@ -142,7 +142,8 @@ pub fn draw_surface(
         Some(lined) => lined.scene.extent(&camera),
         None => surface.extent(&camera),
     };
-    let (around, extent, page) = surround(&surface, extent, &camera, lines.axes.as_ref(), page)?;
+    let (around, extent, page) =
+        surround(&axes_box(&surface), extent, &camera, lines.axes.as_ref(), page)?;
     notes.extend(around.notes.iter().cloned());
     let (mut drawn, size) = match (grid, &lined) {
         (Some(grid), _) => draw_grid(grid, surface.places(), &camera, lines)?,
@@ -309,7 +310,7 @@ impl TurningSurface {
         let scene = &self.lined.scene;
         let extent = scene.extent(&camera);
         let axes = lines.axes.as_ref();
-        let (around, _, page) = surround(&self.sampled, extent, &camera, axes, page)?;
+        let (around, _, page) = surround(&axes_box(&self.sampled), extent, &camera, axes, page)?;
         visible.push_pane(&around.with_wires(scene, &camera), &camera);
         Ok((visible, camera, page))
     }

@@ -9,7 +9,7 @@ use crate::cli::values;
 
 #[derive(Args)]
 #[command(next_help_heading = "Axes")]
-pub(super) struct AxesArgs {
+pub(in crate::cli) struct AxesArgs {
     /// Axes around the surface [default: edges, but frame in top views]
     #[arg(long, value_enum, value_name = "STYLE")]
     axes: Option<StyleName>,
@@ -99,7 +99,7 @@ fn steps(text: &str) -> Result<Steps, String> {
 
 impl AxesArgs {
     /// The axes; `None` if there are to be none.
-    pub(super) fn axes(self, pen_width_mm: f64) -> Result<Option<Axes>, String> {
+    pub(in crate::cli) fn axes(self, pen_width_mm: f64) -> Result<Option<Axes>, String> {
         let style = match self.axes {
             _ if self.no_axes => return Ok(None),
             Some(StyleName::None) if self.title.is_some() => {

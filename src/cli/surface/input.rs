@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use hiddenline::stages::draw::surface::{SurfaceError, SurfaceNote};
+use hiddenline::stages::draw::surface::{SurfaceError, SurfaceNote, axes_box};
 use hiddenline::stages::model::mesh::Mesh;
 use hiddenline::stages::surface::formula::Formula;
 use hiddenline::stages::surface::{
@@ -219,6 +219,7 @@ impl SurfaceInput {
             0 => None,
             n => Some(SurfaceNote::RimsJoined(n).to_string()),
         });
-        Ok((mesh, Notes { summary, warnings, ..Notes::default() }))
+        let axes_box = Some(axes_box(&surface));
+        Ok((mesh, Notes { summary, warnings, axes_box, ..Notes::default() }))
     }
 }

@@ -46,16 +46,20 @@ const SETTLED: f64 = 1e-3;
 
 /// What is around a surface.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Around {
+pub struct Around {
     pub(super) layout: AxesLayout,
     pub(super) strokes: Strokes,
-    pub(super) notes: Vec<SurfaceNote>,
+    /// What is worth knowing about it.
+    pub notes: Vec<SurfaceNote>,
 }
 
-/// Lays axes out around a surface, and places both on the page. `extent` is what the surface takes up of
-/// the image.
-pub(super) fn surround(
-    surface: &SampledSurface,
+/// Lays axes out around a surface, and places both on the page: what all takes up of the image, and the
+/// page. `extent` is what the surface takes up.
+///
+/// # Errors
+/// The page has no room, or a frame is asked for around a surface that is not seen as a map.
+pub fn surround(
+    bounds: &AxesBox,
     extent: Extent,
     camera: &Camera,
     axes: Option<&Axes>,
@@ -67,12 +71,11 @@ pub(super) fn surround(
     if axes.style == Some(AxesStyle::Frame) && !is_straight_down(camera) {
         return Err(SurfaceError::Frame);
     }
-    let bounds = axes_box(surface);
     let text_mm = axes.text_height_mm.unwrap_or_else(|| text_height_mm(&bare, axes.pen_width_mm));
     let mut placed = None;
     for economy in Economy::ALL {
         let size = AxesSize { text_mm, mm_per_unit: bare.mm_per_image_unit(), economy };
-        let Some((layout, page)) = settled(&bounds, extent, camera, axes, options, size)? else {
+        let Some((layout, page)) = settled(bounds, extent, camera, axes, options, size)? else {
             around.notes.push(SurfaceNote::NoAxes);
             return Ok((around, extent, bare));
         };
@@ -137,7 +140,7 @@ fn text_height_mm(page: &Page, pen_width_mm: f64) -> f64 {
 }
 
 /// The box around a surface with the values on its axes.
-fn axes_box(surface: &SampledSurface) -> AxesBox {
+pub fn axes_box(surface: &SampledSurface) -> AxesBox {
     let (low, high) = surface.bounds();
     let (scales, ranges) = (*surface.scales(), *surface.ranges());
     AxesBox { low, high, scales, ranges, z_may_grow: true }
@@ -145,7 +148,7 @@ fn axes_box(surface: &SampledSurface) -> AxesBox {
 
 impl Around {
     /// The axes, with those parts of the lines behind the surface that `scene` does not hide.
-    pub(super) fn with_wires(mut self, scene: &Scene, camera: &Camera) -> Strokes {
+    pub fn with_wires(mut self, scene: &Scene, camera: &Camera) -> Strokes {
         let wires = self.layout.wires();
         let mut segments = ViewSegments::new(scene);
         for wire in wires {

@@ -302,3 +302,22 @@ fn white_faces_hide_the_lines_behind_them() {
         assert!(error.contains(message), "{arguments:?}: {error}");
     }
 }
+
+#[test]
+fn filled_surfaces_have_the_axes_of_their_drawings() {
+    let draw = |arguments: &[&str]| {
+        let output = fill(arguments);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        (text(&output.stdout), text(&output.stderr))
+    };
+    let surface = ["--expr", "x*y", "--samples", "6", "--no-edges"];
+    let n_paths =
+        |arguments: &[&str]| draw(&[&surface[..], arguments].concat()).0.matches("<path").count();
+    let bare = n_paths(&["--axes", "none"]);
+    let edges = n_paths(&[]);
+    let back = n_paths(&["--axes", "back"]);
+    assert!(bare + 60 < edges && edges + 20 < back, "{bare} {edges} {back}");
+    assert_eq!(n_paths(&["--no-axes"]), bare);
+    let (_, said) = draw(&["--expr", "x*y", "--axes", "box", "--turntable", "2", "-o", "o.svg"]);
+    assert!(said.contains("--axes has no effect with --turntable"), "{said}");
+}
