@@ -65,6 +65,8 @@ pub struct ViewedScene<'a> {
     /// Whether bends and flush edges that the scene knows make a difference.
     is_tidied: bool,
     own: Option<&'a ViewSegments>,
+    /// [`Scene::planes`], where the view has segments of its own.
+    planes: &'a [u32],
 }
 
 impl<'a> ViewedScene<'a> {
@@ -157,6 +159,7 @@ impl<'a> ViewedScene<'a> {
             near_plane_cuts,
             is_tidied,
             own,
+            planes: own.map_or(&[], |_| scene.planes()),
         };
         let selected = view.select(lines, rule);
         let only_outline = selected.iter().filter(|(_, is_whole)| !is_whole);
@@ -200,14 +203,15 @@ impl<'a> ViewedScene<'a> {
     }
 
     /// Whether a line is known to lie in a triangle's plane: a line of intersection of faces in that
-    /// plane, or a segment of the view in the triangle. No sign need be asked then.
+    /// plane, or a segment of the view in a flat side of the model that the triangle is part of. No sign need be asked then.
     #[inline]
     pub fn is_known_in_plane_of(&self, line: u32, triangle: u32) -> bool {
         if let Some(own) = self.own
             && let Some(segment) = (line as usize).checked_sub(self.scene.n_lines())
         {
             let [first, end] = own.within[segment];
-            return (first..end).contains(&triangle);
+            let in_plane = |own: u32| self.planes[own as usize] == self.planes[triangle as usize];
+            return (first..end).contains(&triangle) || first < end && in_plane(first);
         }
         match self.scene.source(line) {
             Some(LineSource::Intersection(k)) => {

@@ -17,6 +17,8 @@ pub mod intersections;
 
 pub mod bends;
 
+mod planes;
+
 pub mod creases;
 
 pub mod smooth;

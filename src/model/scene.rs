@@ -17,6 +17,7 @@ use crate::model::flush::{BoundaryPart, FlushEdges, flush_edges};
 use crate::model::intersections::Intersections;
 use crate::model::looseness::Looseness;
 use crate::model::mesh::Mesh;
+use crate::model::planes::planes;
 use crate::model::topology::{EdgeUse, Topology};
 use crate::model::triangulate::{newell_normal, triangulate};
 use crate::predicates::PiercePoint;
@@ -79,6 +80,7 @@ pub struct Scene {
     normals: OnceLock<Vec<DVec3>>,
     dihedrals: OnceLock<Vec<Dihedral>>,
     groups: OnceLock<Vec<u32>>,
+    planes: OnceLock<Vec<u32>>,
     looseness: OnceLock<Looseness>,
     flush_edges: FlushEdges,
     /// Vertices and ends of intersections, rounded; empty when there are none of the latter.
@@ -259,6 +261,14 @@ impl Scene {
             let numbers: Vec<u32> =
                 (0..).zip(names).map(|(i, names)| *first.entry(names).or_insert(i)).collect();
             self.mesh.face_parts().iter().map(|&part| numbers[part as usize]).collect()
+        })
+    }
+
+    /// For each triangle a number; triangles with the same number lie in one plane, exactly. Others may do
+    /// so, too, where no edge connects them. Computed when first asked for; O(corners), in parallel.
+    pub fn planes(&self) -> &[u32] {
+        computed_once::<Vec<u32>>(&self.planes, || {
+            planes(&self.mesh, &self.topology, &self.triangles, &self.triangle_faces)
         })
     }
 

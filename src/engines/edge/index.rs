@@ -10,6 +10,8 @@
 //!   level 0   ├───┬───┼───┬───┤   small triangles; 2^k × 2^k of these make a cell of level k
 //! ```
 //!
+//! Long thin triangles lie in finer cells, along them; see [`slivers`].
+//!
 //! A cell that triangles cover without a gap has a depth behind which everything is hidden there
 //! (W. R. Franklin, SIGGRAPH 1980; see [`covered`]). Triangles and segments behind it are dropped, so
 //! that the cost does not grow with the number of layers behind a wall.
@@ -19,8 +21,10 @@
 
 mod covered;
 mod levels;
+mod slivers;
 
 use self::levels::{Level, levels};
+use self::slivers::{finer_levels, most_finer};
 use super::VisibilityOptions;
 use super::back_faces::BackFaces;
 use super::rounding::{Bounds, Place, Rounding, Separation, rounded_down, rounded_up};
@@ -70,6 +74,10 @@ struct Placed {
     item: u32,
     level: u32,
     bounds: Bounds,
+    /// The image of a triangle; empty for others.
+    image: [DVec2; 3],
+    /// How many levels finer the cells of a sliver may be.
+    finer: u32,
 }
 
 /// The pyramid of grids; see the module docs.
@@ -122,7 +130,7 @@ impl ImageIndex {
     ) -> Self {
         let rounding = Rounding::new(view);
         let n_segments = segments.clone().count();
-        let (origin, levels) = levels(&rounding, segments.clone(), n_items);
+        let (origin, levels) = levels(&rounding, segments.clone(), n_items.max(n_segments));
         let n_cells = levels.last().map_or(0, |level| level.first + level.columns * level.rows);
         let coarsest = levels[levels.len() - 1];
         let size = dvec2(f64::from(coarsest.columns), f64::from(coarsest.rows)) * coarsest.cell;
@@ -201,13 +209,14 @@ impl ImageIndex {
                 let (mut near, mut everywhere) = (Vec::new(), Vec::new());
                 let last = ((chunk + 1) * CHUNK).min(this.n_items);
                 for item in (chunk * CHUNK) as u32..last as u32 {
-                    let bounds = match place(item) {
+                    let (bounds, image) = match place(item) {
                         Place::Nowhere => continue,
                         Place::Everywhere => {
                             everywhere.push(item);
                             continue;
                         }
-                        Place::Within(bounds) => bounds,
+                        Place::Within(bounds) => (bounds, None),
+                        Place::Triangle(bounds, image) => (bounds, Some(image)),
                     };
                     let Some(level) = this.level_of(&bounds) else { continue };
                     let mut is_near = false;
@@ -215,7 +224,10 @@ impl ImageIndex {
                         is_near |= marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
                     });
                     if is_near {
-                        near.push(Placed { item, level: level as u32, bounds });
+                        let cell = this.levels[level].cell;
+                        let finer = image.map_or(0, |image| finer_levels(cell, level, image));
+                        let (level, image) = (level as u32, image.unwrap_or_default());
+                        near.push(Placed { item, level, bounds, image, finer });
                     }
                 }
                 (near, everywhere)
@@ -229,19 +241,27 @@ impl ImageIndex {
     /// Puts the items into their cells, except in cells that are covered in front of them.
     fn insert(&mut self, near: &[Vec<Placed>], marks: Option<&[f64]>) {
         let this = &*self;
+        let most_finer = most_finer(near, self.n_items);
         let parts: Vec<Vec<(u32, Entry)>> = near
             .par_iter()
             .map(|near| {
                 let mut entries = Vec::with_capacity(2 * near.len());
-                for Placed { item, level, bounds } in near {
+                for Placed { item, level, bounds, image, finer } in near {
                     let entry = Entry::new(*item, bounds);
-                    this.for_box(&this.levels[*level as usize], bounds, |cell| {
+                    let mut add = |cell: u32| {
                         let wanted = marks.is_none_or(|m| bounds.nearest <= m[cell as usize]);
                         let covered_from = this.covered_from.get(cell as usize);
                         if wanted && covered_from.is_none_or(|&depth| bounds.nearest <= depth) {
                             entries.push((cell, entry));
                         }
-                    });
+                    };
+                    match finer.min(&most_finer) {
+                        0 => this.for_box(&this.levels[*level as usize], bounds, add),
+                        finer => {
+                            let level = &this.levels[(level - finer) as usize];
+                            this.for_triangle(level, bounds, *image, &mut add);
+                        }
+                    }
                 }
                 entries
             })

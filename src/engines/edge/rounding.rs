@@ -66,6 +66,8 @@ pub(super) enum Place {
     Everywhere,
     /// Into the cells that its box touches.
     Within(Bounds),
+    /// Into the cells that a triangle with this box and these corners touches.
+    Triangle(Bounds, [DVec2; 3]),
 }
 
 /// The error bounds of a view.
@@ -124,7 +126,8 @@ impl Rounding {
             }
         }
         let points = corners.map(|corner| view.image()[corner as usize]);
-        Place::Within(self.bounds(points.map(ImagePoint::image), points.map(|p| p.depth)))
+        let image = points.map(ImagePoint::image);
+        Place::Triangle(self.bounds(image, points.map(|p| p.depth)), image)
     }
 }
 

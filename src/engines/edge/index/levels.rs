@@ -8,7 +8,7 @@ use crate::engines::edge::segment::Segment;
 /// Images further out than this, as the tangent of the angle off the axis, share the border cells.
 const WIDEST_TANGENT: f64 = 8.0;
 
-/// Triangles for each cell of the finest level. Fewer make more cells to visit and more entries,
+/// Triangles, or segments where there are more of these, for each cell of the finest level. Fewer make more cells to visit and more entries,
 /// more make longer lists in each; between 1 and 16 the work differs by a tenth.
 const TRIANGLES_PER_CELL: f64 = 4.0;
 
