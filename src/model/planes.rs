@@ -85,7 +85,7 @@ mod tests {
 
     fn planes(points: &[[f64; 3]], faces: &[&[u32]]) -> Vec<u32> {
         let points: Vec<_> = points.iter().map(|&[x, y, z]| dvec3(x, y, z)).collect();
-        Scene::from_faces(&points, faces).unwrap().planes().to_vec()
+        Scene::from_faces(&points, faces).expect("a mesh").planes().to_vec()
     }
 
     /// A roof: two flat halves of two triangles each.
