@@ -177,7 +177,7 @@ impl FillArgs {
             return Err("--white draws whole edges; leave outline out of --lines".into());
         }
         let fill = areas.options();
-        let hatch = hatch.options(fill.light.into());
+        let hatch = hatch.options(fill.light);
         if areas.white && !paints_over(fill.engine) {
             let name = fill.engine.name();
             return Err(format!(

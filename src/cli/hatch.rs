@@ -103,13 +103,18 @@ enum Shadows {
     Only,
 }
 
+/// The light by its direction or its place.
+pub(super) fn light_source(direction: Option<DVec3>, place: Option<DVec3>) -> LightSource {
+    match (direction, place) {
+        (_, Some(place)) => LightSource::At(place),
+        (Some(direction), None) => LightSource::From(direction),
+        (None, None) => LightSource::Shoulder,
+    }
+}
+
 impl LightArgs {
     pub(super) fn source(&self) -> LightSource {
-        match (self.light, self.light_at) {
-            (_, Some(place)) => LightSource::At(place),
-            (Some(direction), None) => LightSource::From(direction),
-            (None, None) => LightSource::Shoulder,
-        }
+        light_source(self.light, self.light_at)
     }
 }
 

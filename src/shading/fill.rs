@@ -24,7 +24,7 @@ use crate::model::mesh::MeshPart;
 use crate::model::scene::Scene;
 use crate::plot::{FillLayer, Fills};
 use crate::shading::light::{
-    DEFAULT_PAINT, FARTHEST, Light, number_color, order_color, parts, to_bytes,
+    DEFAULT_PAINT, FARTHEST, Light, LightSource, number_color, order_color, parts, to_bytes,
 };
 
 /// Most inks.
@@ -83,8 +83,8 @@ pub struct FillOptions {
     pub disjoint: bool,
     /// What the colors show.
     pub show: Coloring,
-    /// Where the light comes from, in world directions; `None` for the viewer's left shoulder.
-    pub light: Option<DVec3>,
+    /// Where the light comes from.
+    pub light: LightSource,
     /// How much the farthest face fades into the paper, from 0 to 1; nearer faces fade less.
     pub depth_cue: f64,
     /// The color of faces whose material has none; `None` for the color of paper.
@@ -115,10 +115,10 @@ impl FillOptions {
         Self { paint: Some(color), ..self }
     }
 
-    /// Where the light comes from: a direction in the world, toward the light.
+    /// Where the light comes from.
     #[must_use]
-    pub fn light(self, direction: DVec3) -> Self {
-        Self { light: Some(direction), ..self }
+    pub fn light(self, light: LightSource) -> Self {
+        Self { light, ..self }
     }
 
     /// How much the farthest face fades into the paper, from 0 to 1.
@@ -295,7 +295,7 @@ impl<'a> Shader<'a> {
         let mut shader = Self {
             scene,
             camera,
-            light: Light::new(options.light.into(), camera),
+            light: Light::new(options.light, camera),
             show: options.show,
             depth_cue: options.depth_cue.clamp(0.0, 1.0),
             paint,
@@ -338,8 +338,10 @@ impl<'a> Shader<'a> {
         let towards = if normal.dot(sight) > 0.0 { -normal } else { normal };
         let part_of = self.scene.mesh().face_parts().get(face as usize);
         let paint = part_of.and_then(|&part| self.part_paints.get(part as usize));
+        let sum: DVec3 = corners.iter().map(|&v| positions[v as usize]).sum();
+        let middle = sum / corners.len().max(1) as f64;
         let lit =
-            *paint.unwrap_or(&self.paint) * self.light.tone(towards.normalize_or_zero(), first);
+            *paint.unwrap_or(&self.paint) * self.light.tone(towards.normalize_or_zero(), middle);
         lit.lerp(DVec3::ONE, self.depth_cue * part)
     }
 }

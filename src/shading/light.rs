@@ -39,13 +39,6 @@ pub enum LightSource {
     At(DVec3),
 }
 
-impl From<Option<DVec3>> for LightSource {
-    /// From a direction, or over the shoulder.
-    fn from(direction: Option<DVec3>) -> Self {
-        direction.map_or(Self::Shoulder, Self::From)
-    }
-}
-
 /// Why a light makes no shadows.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LightError {

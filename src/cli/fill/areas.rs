@@ -7,6 +7,7 @@ use hiddenline::stages::engines::face::{FaceEngine, FaceOptions};
 use hiddenline::stages::shading::fill::{Coloring, DEFAULT_SEAM_MM, FillOptions, Palette};
 
 use crate::cli::choice::{one_of, one_of_these};
+use crate::cli::hatch::light_source;
 use crate::cli::values;
 
 #[derive(Args)]
@@ -18,6 +19,10 @@ pub(super) struct AreaArgs {
     /// Direction toward the light [default: over the viewer's left shoulder]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
+    /// Where the light is, as a point
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "light")]
+    light_at: Option<DVec3>,
     /// How much the farthest face fades into the paper, from 0 to 1
     #[arg(long, value_name = "PART", value_parser = values::part, default_value_t = 0.0)]
     depth_cue: f64,
@@ -46,7 +51,8 @@ pub(super) struct AreaArgs {
     /// For screen and print only. On a plotter white paint covers nothing: it would draw all hidden
     /// lines too, so plot the lines of `draw`. Engines: depth-sort, bsp (the default here), octree.
     #[arg(long, conflicts_with_all = [
-        "palette", "debug", "disjoint", "no_edges", "light", "depth_cue", "paint", "leaf", "subdivision",
+        "palette", "debug", "disjoint", "no_edges", "light", "light_at", "depth_cue", "paint", "leaf",
+        "subdivision",
     ])]
     pub(super) white: bool,
     /// Color areas to show how the engine worked
@@ -80,7 +86,7 @@ impl AreaArgs {
             settings: FaceOptions { leaf: None, subdivision: self.subdivision },
             disjoint: self.disjoint,
             show: self.debug.unwrap_or_default(),
-            light: self.light,
+            light: light_source(self.light, self.light_at),
             depth_cue: self.depth_cue,
             paint: Some(self.paint),
             palette: self.palette.clone(),

@@ -4,10 +4,10 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use hiddenline::stages::classify::LineSelection;
 use hiddenline::stages::engines::image::ImageEngine;
-use hiddenline::stages::shading::light::LightSource;
 use hiddenline::stages::shading::preview::{Pixels, PreviewOptions, Show};
 
 use crate::cli::choice::one_of;
+use crate::cli::hatch::light_source;
 use crate::cli::{Refused, values};
 
 #[derive(Args)]
@@ -126,7 +126,7 @@ impl PictureArgs {
             pixels,
             show,
             smooth_deg: (self.shading == Shading::Smooth).then_some(self.smooth_angle),
-            light: self.light_at.map_or(self.light.into(), LightSource::At),
+            light: light_source(self.light, self.light_at),
             color: self.paint,
             background: self.background,
             fit_fov: self.fit_fov,

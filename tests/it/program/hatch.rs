@@ -151,3 +151,41 @@ fn surfaces_and_fills_are_hatched_too() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stdout).contains("hatch"));
 }
+
+#[test]
+fn materials_have_their_own_angle_and_darkness() {
+    let folder = tempfile::tempdir().unwrap();
+    // Two squares beside each other, upright, with the light along them.
+    let walls = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 2 0 0\nv 3 0 0\nv 3 0 1\nv 2 0 1\n\
+                 usemtl brick\nf 1 2 3 4\nusemtl wood\nf 5 6 7 8\n";
+    std::fs::write(folder.path().join("walls.obj"), walls).unwrap();
+    let fixed = ["draw", "walls.obj", "--view", "front", "--light", "1,0,0", "--hatch", "straight"];
+    let fixed = [&fixed[..], &["--hatch-levels", "continuous", "--format", "json"]].concat();
+    // For the left and for the right wall the length of the lines, and whether all are level.
+    let drawn = |more: &[&str]| {
+        let output = hiddenline(folder.path(), &[&fixed[..], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let drawing: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let mut walls = [(0.0, true); 2];
+        for stroke in drawing["strokes"].as_array().unwrap() {
+            if stroke["kind"] == "hatch" {
+                let points: Vec<[f64; 2]> =
+                    serde_json::from_value(stroke["points"].clone()).unwrap();
+                let wall = &mut walls[usize::from(points[0][0] > 0.0)];
+                for pair in points.windows(2) {
+                    let step = [0, 1].map(|k| pair[1][k] - pair[0][k]);
+                    wall.0 += step[0].hypot(step[1]);
+                    wall.1 &= step[1].abs() < 1e-9;
+                }
+            }
+        }
+        walls
+    };
+    let [left, right] = drawn(&[]);
+    assert!(left.0 > 0.0 && !left.1 && !right.1);
+    assert!((right.0 / left.0 - 1.0).abs() < 0.05, "{left:?} {right:?}");
+    let [other, level] = drawn(&["--hatch-material", "wood=0:0.3"]);
+    assert_eq!(other, left);
+    // Half as dark.
+    assert!(level.1 && (level.0 / left.0 - 0.5).abs() < 0.05, "{left:?} {level:?}");
+}

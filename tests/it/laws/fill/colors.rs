@@ -4,6 +4,7 @@ use super::built;
 use crate::models;
 use crate::scenes::{Model, Scene as TestScene, orthographic};
 use glam::{DVec2, DVec3, dvec2};
+use hiddenline::LightSource;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::camera::framing::View;
 use hiddenline::stages::engines::face::FaceEngine;
@@ -53,7 +54,7 @@ fn plot(filled: &Filled, camera: &Camera, options: &PageOptions, seam_mm: f64) -
 fn faces_towards_the_light_have_the_paint_and_those_turned_away_a_quarter_of_it() {
     let (scene, camera) = built(&cube());
     let paint = [200, 100, 40];
-    let light = Some(DVec3::Z);
+    let light = LightSource::From(DVec3::Z);
     let options = FillOptions { light, paint: Some(paint), ..FillOptions::default() };
     let filled = fill(&scene, &camera, &options).unwrap();
     let mut colors: Vec<[u8; 3]> = filled.layers[0].fills.iter().map(|area| area.color).collect();
@@ -87,7 +88,7 @@ fn squares(tilt: f64, is_turned: bool) -> TestScene {
 /// Color and area of each area.
 fn colored(scene: &TestScene, options: FillOptions) -> Vec<([u8; 3], f64)> {
     let (scene, camera) = built(scene);
-    let light = Some(DVec3::Z);
+    let light = LightSource::From(DVec3::Z);
     let filled = fill(&scene, &camera, &FillOptions { light, ..options }).unwrap();
     let layers = filled.layers.iter();
     layers.map(|layer| (layer.color, area(&layer.fills))).collect()
@@ -104,7 +105,7 @@ fn an_ink_has_a_hole_where_another_is_seen() {
 #[test]
 fn what_is_near_keeps_its_color_and_what_is_far_pales() {
     let (scene, camera) = built(&squares(0.0, false));
-    let (light, paint) = (Some(DVec3::Z), Some([200, 100, 40]));
+    let (light, paint) = (LightSource::From(DVec3::Z), Some([200, 100, 40]));
     for (depth_cue, far) in [(0.0, [200, 100, 40]), (1.0, [255; 3])] {
         let options = FillOptions { light, paint, depth_cue, ..FillOptions::default() };
         let filled = fill(&scene, &camera, &options).unwrap();
@@ -153,7 +154,8 @@ fn inks_lie_beside_each_other_whatever_the_engine() {
 /// Layers of the cube from above, its top in `paint` and two sides in a quarter of that.
 fn inked(paint: [u8; 3], palette: Palette) -> Vec<(String, [u8; 3], usize)> {
     let (scene, camera) = built(&cube());
-    let (light, paint, palette) = (Some(DVec3::Z), Some(paint), Some(palette));
+    let light = LightSource::From(DVec3::Z);
+    let (paint, palette) = (Some(paint), Some(palette));
     let options = FillOptions { light, paint, palette, ..FillOptions::default() };
     let layers = fill(&scene, &camera, &options).unwrap().layers;
     layers.into_iter().map(|layer| (layer.name, layer.color, layer.fills.len())).collect()
@@ -266,4 +268,22 @@ fn formats_without_areas_refuse_them_and_others_have_them() {
     pdf::write(&plot, &mut out).unwrap();
     let text = String::from_utf8_lossy(&out);
     assert_eq!(text.lines().filter(|line| line.trim() == "B*").count(), 3);
+}
+
+#[test]
+fn a_lamp_lights_each_face_by_the_way_to_its_middle() {
+    // Two squares on the ground; the lamp stands over the first one's middle.
+    let mut model = Model::default();
+    for x in [0.0, 6.0] {
+        model.face(&[[x, 0.0, 0.0], [x + 2.0, 0.0, 0.0], [x + 2.0, 2.0, 0.0], [x, 2.0, 0.0]]);
+    }
+    let scene = model.seen_by("floor", orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
+    let (scene, camera) = built(&scene);
+    let light = LightSource::At(glam::dvec3(1.0, 1.0, 8.0));
+    let options = FillOptions { light, paint: Some([200; 3]), ..FillOptions::default() };
+    let filled = fill(&scene, &camera, &options).unwrap();
+    let mut grays: Vec<u8> = filled.layers[0].fills.iter().map(|area| area.color[0]).collect();
+    grays.sort_unstable();
+    // Six to the side of a lamp eight above: the cosine is 0.8, and a quarter of the tone is ambient.
+    assert_eq!(grays, [170, 200]);
 }

@@ -401,3 +401,54 @@ fn hatching_goes_up_to_a_face_that_goes_on_beside_it() {
     assert_eq!(of(0.5), of(0.0));
     assert!(of(0.05) < of(0.0), "there it is a step");
 }
+
+#[test]
+fn faces_are_flat_or_one_curved_surface_by_the_angle_between_them() {
+    // Two upright faces, each seen at 45°, with the light from the viewer.
+    let wedge = [[-1.0, 1.0], [0.0, 0.0], [1.0, 1.0]];
+    let corners: Vec<DVec3> =
+        [0.0, 1.0].iter().flat_map(|&z| wedge.map(|[x, y]| dvec3(x, y, z))).collect();
+    let scene = Scene::from_faces(&corners, [[0, 1, 4, 3], [1, 2, 5, 4]]).unwrap();
+    let mm = 40.0;
+    let length_with = |smooth_deg: f64| {
+        let (light, levels) = (LightSource::From(DVec3::NEG_Y), HatchLevels::Continuous);
+        let options = HatchOptions { light, levels, smooth_deg, ..plain(HatchMethod::Straight) };
+        let got = length(&hatched(&scene, &along(DVec3::Y), &options, mm)) * mm;
+        got * PEN_MM / (options.black * mm * mm)
+    };
+    // Each face is a square on paper, as dark as its angle says.
+    let flat = 2.0 * (1.0 - 0.5_f64.sqrt());
+    for smooth_deg in [0.0, 30.0, 89.0] {
+        assert!((length_with(smooth_deg) - flat).abs() < 0.02, "{}", length_with(smooth_deg));
+    }
+    // Their common edge faces the light, and their far edges do so at 45°: less is dark.
+    let curved = length_with(91.0);
+    assert!(curved > 0.3 * flat && curved < 0.8 * flat, "{curved} of {flat}");
+}
+
+#[test]
+fn sections_lie_in_planes_with_the_given_normal() {
+    let scene = cuboid(dvec3(2.0, 3.0, 4.0));
+    let camera = along(dvec3(0.4, 1.0, 0.0));
+    for normal in [DVec3::Z, dvec3(1.0, -2.0, 0.5)] {
+        let light = LightSource::From(dvec3(1.0, -0.5, 0.2));
+        let normal_of_planes = Some(normal);
+        let options =
+            HatchOptions { light, normal: normal_of_planes, ..plain(HatchMethod::Sections) };
+        let strokes = hatched(&scene, &camera, &options, 20.0);
+        assert!(strokes.len() > 10, "{}", strokes.len());
+        // Images of the sides' own directions, the x and the y axis of the world, with the height.
+        let frame = camera.frame();
+        for stroke in strokes.iter() {
+            for pair in stroke.points.windows(2) {
+                let step = pair[1] - pair[0];
+                let is_in_plane = [DVec3::X, DVec3::Y].iter().any(|&side| {
+                    // A step along the side and up whose image this is.
+                    let along = step.x / side.dot(frame.right);
+                    (normal.dot(side * along + DVec3::Z * step.y)).abs() < 1e-9
+                });
+                assert!(is_in_plane, "{step} of planes across {normal}");
+            }
+        }
+    }
+}

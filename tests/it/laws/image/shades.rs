@@ -19,7 +19,7 @@ fn picture(model: Model, show: Show) -> impl Fn(f64, f64) -> [u8; 3] {
     let options = PreviewOptions {
         size: SIZE,
         show,
-        light: Some(glam::DVec3::Z).into(),
+        light: LightSource::From(glam::DVec3::Z),
         ..PreviewOptions::default()
     };
     let mut bytes = Vec::new();
