@@ -21,7 +21,7 @@ use crate::engines::edge::outline::Outline;
 use crate::engines::visibility::{Span, Visibility};
 use crate::links::{FREE, for_each_trail};
 use crate::strokes::draft::{Draft, DraftPoint, Mark};
-use crate::strokes::{StrokeKind, Strokes};
+use crate::strokes::{StrokeKind, Strokes, SurfacePart};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ pub struct ChainOptions {
     /// One two-point stroke for each maximal visible span and each hidden one of constant `qi`;
     /// nothing is joined or dropped, and lines that coincide are all kept.
     pub exact: bool,
-    /// Join only pieces of one kind and one `qi`, so that a stroke's attributes apply to all of it.
+    /// Join only pieces of one kind, one part of a surface and one `qi`, so that a stroke's attributes apply to all of it.
     /// Otherwise all visible pieces join, and all hidden ones, as one pen draws them.
     pub apart_by_kind: bool,
     /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between
@@ -55,6 +55,7 @@ impl ChainOptions {
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     kind: StrokeKind,
+    part: SurfacePart,
     qi: u32,
     outline: bool,
     only_outline: bool,
@@ -101,7 +102,10 @@ pub fn chain(
     }
     let is_apart = options.apart_by_kind || options.hidden_levels.is_some() || outline.is_some();
     let links = if is_apart {
-        link(&pieces, |piece| class(piece.kind, piece.qi, piece.outline, options))
+        link(&pieces, |piece| {
+            let part = if options.apart_by_kind { piece.part } else { SurfacePart::default() };
+            (class(piece.kind, piece.qi, piece.outline, options), part)
+        })
     } else {
         links
     };
@@ -144,6 +148,8 @@ pub fn draft(view: &ViewedScene, visibility: &Visibility, options: &ChainOptions
 fn push(drawing: &mut Strokes, first: &Piece, points: &[DVec2]) {
     if first.outline {
         drawing.push_outline(first.kind, points.iter().copied());
+    } else if first.qi == 0 {
+        drawing.push_part(first.kind, first.part, points.iter().copied());
     } else {
         drawing.push(first.kind, first.qi, points.iter().copied());
     }
@@ -240,6 +246,7 @@ fn pieces(
                         }
                         pieces.push(Piece {
                             kind: drawn.kind,
+                            part: drawn.part,
                             qi: span.qi,
                             outline,
                             only_outline,
@@ -311,10 +318,10 @@ fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
 }
 
 /// For each end of each piece (numbered `2 · piece + side`) the end it is joined to, or [`FREE`].
-fn link(pieces: &[Piece], class: impl Fn(&Piece) -> (u32, u32)) -> Vec<u32> {
+fn link<C: Copy + Ord + Send>(pieces: &[Piece], class: impl Fn(&Piece) -> C) -> Vec<u32> {
     let mut links = vec![FREE; 2 * pieces.len()];
     // Ends by vertex, then class, then number: ends that may join are neighbours.
-    let mut ends: Vec<(u32, (u32, u32), u32)> = (0..links.len() as u32)
+    let mut ends: Vec<(u32, C, u32)> = (0..links.len() as u32)
         .filter_map(|end| {
             let piece = &pieces[end as usize / 2];
             let vertex = piece.ends[end as usize % 2];

@@ -28,7 +28,7 @@ use crate::model::creases::CreaseAngle;
 use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
 use crate::predicates::{Sight, Sign, exact};
-use crate::strokes::StrokeKind;
+use crate::strokes::{StrokeKind, SurfacePart};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -45,6 +45,15 @@ pub struct SelectedLine {
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,
+    /// Which part of a surface it is of.
+    pub part: SurfacePart,
+}
+
+impl SelectedLine {
+    /// A line that is of no part of a surface.
+    pub fn new(edge: u32, kind: StrokeKind) -> Self {
+        Self { edge, kind, part: SurfacePart::default() }
+    }
 }
 
 /// A scene as one camera sees it, with the edges that are to be drawn.
@@ -170,12 +179,15 @@ impl<'a> ViewedScene<'a> {
 
     /// Draws the given edges and no others, whatever kinds apply to them.
     ///
-    /// They may come in any order. An edge that is given more than once gets the last of its kinds in
-    /// the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when an edge does
+    /// They may come in any order. An edge that is given more than once is a silhouette if one of its kinds
+    /// is, and otherwise gets the last of its kinds in the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when an edge does
     /// not exist. O(faces + edges log edges).
     pub fn with_edges(scene: &'a Scene, camera: &Camera, mut edges: Vec<SelectedLine>) -> Self {
         let mut view = Self::new(scene, camera, LineSelection::NONE, DEFAULT_CREASE_DEG);
-        edges.par_sort_unstable_by_key(|drawn| (drawn.edge, std::cmp::Reverse(drawn.kind)));
+        edges.par_sort_unstable_by_key(|drawn| {
+            let is_fold = drawn.kind == StrokeKind::Silhouette;
+            (drawn.edge, !is_fold, std::cmp::Reverse((drawn.kind, drawn.part)))
+        });
         edges.dedup_by_key(|drawn| drawn.edge);
         edges.retain(|drawn| {
             let [a, b] = view.line(drawn.edge);
@@ -300,7 +312,7 @@ impl<'a> ViewedScene<'a> {
                 outlined.then(|| self.kind(edge, of_outline, &creases))?
             })?;
             let [a, b] = self.scene.topology().edge(edge);
-            let drawn = (SelectedLine { edge, kind }, whole.is_some());
+            let drawn = (SelectedLine::new(edge, kind), whole.is_some());
             (!self.sight.same_image(a, b)).then_some(drawn)
         };
         let even_kinds = [StrokeKind::Crease, StrokeKind::Material, StrokeKind::Mesh];
@@ -317,7 +329,7 @@ impl<'a> ViewedScene<'a> {
             let first = self.scene.n_lines() as u32;
             let segments = (first..).zip(own.ends.iter().zip(&own.kinds));
             let seen = segments.filter(|(_, (ends, _))| !self.sight.same_image(ends[0], ends[1]));
-            drawn.extend(seen.map(|(edge, (_, &kind))| (SelectedLine { edge, kind }, true)));
+            drawn.extend(seen.map(|(edge, (_, &kind))| (SelectedLine::new(edge, kind), true)));
         }
         drawn
     }
@@ -374,7 +386,7 @@ impl<'a> ViewedScene<'a> {
                     LineSource::Intersection(_) | LineSource::Wire(_) => true,
                 };
                 let is_seen = !self.sight.same_image(line.ends[0], line.ends[1]);
-                is_seen.then_some((SelectedLine { edge, kind }, is_whole))
+                is_seen.then_some((SelectedLine::new(edge, kind), is_whole))
             })
             .collect()
     }

@@ -234,7 +234,7 @@ pub use engines::face::FaceEngine;
 pub use hatch::{Ground, HatchLevels, HatchMaterial, HatchMethod, HatchOptions, HatchShadows};
 pub use shading::fill::{FillOptions, Palette};
 pub use shading::light::LightSource;
-pub use strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
+pub use strokes::{GridFamily, HiddenLines, Stroke, StrokeKind, Strokes, SurfacePart};
 
 // The paper.
 pub use api::Sheet;

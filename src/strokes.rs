@@ -30,6 +30,8 @@ pub enum StrokeKind {
     Grid,
     /// A level curve of a function surface.
     Level,
+    /// A level curve that is drawn heavier, such as every fifth.
+    Index,
     /// An axis, its ticks, or the base box.
     Axis,
     /// Lettering.
@@ -38,11 +40,35 @@ pub enum StrokeKind {
     Hatch,
     /// The outline of a shadow.
     Shadow,
+    /// The height at a level curve, written in a gap of it.
+    Label,
+    /// Where a range of heights cuts a surface off.
+    Cut,
+}
+
+/// Which part of a surface a line is of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SurfacePart {
+    /// The sheet, counted from 1; 0 if the line is of none, or of several.
+    pub sheet: u16,
+    /// The level of a level curve, counted from 1 for the lowest; 0 for other lines.
+    pub level: u16,
+    /// The family of a grid line.
+    pub family: Option<GridFamily>,
+}
+
+/// A family of grid lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum GridFamily {
+    /// Along x, or u.
+    AlongX,
+    /// Along y, or v.
+    AlongY,
 }
 
 impl StrokeKind {
     /// All kinds.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 17] = [
         Self::Silhouette,
         Self::Crease,
         Self::Boundary,
@@ -53,10 +79,13 @@ impl StrokeKind {
         Self::Mesh,
         Self::Grid,
         Self::Level,
+        Self::Index,
         Self::Axis,
         Self::Text,
         Self::Hatch,
         Self::Shadow,
+        Self::Label,
+        Self::Cut,
     ];
 
     /// The name used on the command line and in files.
@@ -72,10 +101,13 @@ impl StrokeKind {
             Self::Mesh => "mesh",
             Self::Grid => "grid",
             Self::Level => "level",
+            Self::Index => "index",
             Self::Axis => "axis",
             Self::Text => "text",
             Self::Hatch => "hatch",
             Self::Shadow => "shadow",
+            Self::Label => "label",
+            Self::Cut => "cut",
         }
     }
 }
@@ -120,6 +152,8 @@ pub struct Stroke<'a> {
     pub underside: bool,
     /// Whether the light reaches it. Known only for exact hatching.
     pub lit: Option<bool>,
+    /// Which part of a surface it is of.
+    pub part: SurfacePart,
     /// Two points or more in image coordinates; a closed stroke ends at its first point.
     pub points: &'a [DVec2],
 }
@@ -139,6 +173,7 @@ struct Head {
     outline: bool,
     underside: bool,
     lit: Option<bool>,
+    part: SurfacePart,
     end: u32,
 }
 
@@ -146,6 +181,31 @@ impl Strokes {
     /// Appends a stroke. One of fewer than two points is left out.
     pub fn push(&mut self, kind: StrokeKind, qi: u32, points: impl IntoIterator<Item = DVec2>) {
         self.push_with(kind, qi, false, None, points);
+    }
+
+    /// Appends a visible stroke of a part of a surface. One of fewer than two points is left out.
+    pub fn push_part(
+        &mut self,
+        kind: StrokeKind,
+        part: SurfacePart,
+        points: impl IntoIterator<Item = DVec2>,
+    ) {
+        let n = self.heads.len();
+        self.push_with(kind, 0, false, None, points);
+        if let Some(head) = self.heads.get_mut(n) {
+            head.part = part;
+        }
+    }
+
+    /// Appends a stroke with all of its attributes but other points. One of fewer than two points is left
+    /// out.
+    pub fn push_like(&mut self, stroke: &Stroke, points: impl IntoIterator<Item = DVec2>) {
+        let Stroke { kind, qi, outline, underside, lit, part, .. } = *stroke;
+        let n = self.heads.len();
+        self.push_with(kind, qi, outline, lit, points);
+        if let Some(head) = self.heads.get_mut(n) {
+            (head.underside, head.part) = (underside, part);
+        }
     }
 
     /// Appends a visible stroke that the light reaches or not. One of fewer than two points is left out.
@@ -177,7 +237,8 @@ impl Strokes {
             self.points.truncate(start);
         } else {
             let end = self.points.len() as u32;
-            self.heads.push(Head { kind, qi, outline, underside: false, lit, end });
+            let part = SurfacePart::default();
+            self.heads.push(Head { kind, qi, outline, underside: false, lit, part, end });
         }
     }
 
@@ -216,8 +277,8 @@ impl Strokes {
         self.heads.iter().scan(0, |start, head| {
             let points = &self.points[*start..head.end as usize];
             *start = head.end as usize;
-            let Head { kind, qi, outline, underside, lit, .. } = *head;
-            Some(Stroke { kind, qi, outline, underside, lit, points })
+            let Head { kind, qi, outline, underside, lit, part, .. } = *head;
+            Some(Stroke { kind, qi, outline, underside, lit, part, points })
         })
     }
 

@@ -11,7 +11,7 @@ use crate::engines::surface::pieces::{LOWER, PARTLY, UPPER};
 use crate::engines::surface::{GridPieces, SurfaceSide, VisiblePiece};
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
-use crate::strokes::{StrokeKind, Strokes};
+use crate::strokes::{GridFamily, StrokeKind, Strokes, SurfacePart};
 use crate::surface::formula::Axis;
 use crate::surface::{Grid, Places};
 
@@ -56,25 +56,28 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLi
             None => (0..n).filter(|k| k % every == 0 || k + 1 == n).collect(),
         }
     };
-    let mut families: Vec<Vec<GridLine>> = Vec::new();
+    let mut families: Vec<(GridFamily, Vec<GridLine>)> = Vec::new();
     if lines.along_x {
         let line = |j| GridLine { first: j * nx, step: 1, edge: j * (nx - 1), n: nx };
-        families.push(chosen(ny, Axis::Second).into_iter().map(line).collect());
+        families.push((GridFamily::AlongX, chosen(ny, Axis::Second).into_iter().map(line).collect()));
     }
     if lines.along_y {
         let along_x = ny * (nx - 1);
         let line = |i| GridLine { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
-        families.push(chosen(nx, Axis::First).into_iter().map(line).collect());
+        families.push((GridFamily::AlongY, chosen(nx, Axis::First).into_iter().map(line).collect()));
     }
     let mut drawing = Strokes::default();
-    for family in &families {
-        let chains: Vec<Chains> =
-            family.par_iter().map(|line| line.chains(grid, pieces, &projector, lines)).collect();
+    for (family, lines_of_family) in &families {
+        let part = SurfacePart { sheet: 1, level: 0, family: Some(*family) };
+        let chains: Vec<Chains> = lines_of_family
+            .par_iter()
+            .map(|line| line.chains(grid, pieces, &projector, lines))
+            .collect();
         let strokes: Vec<(LineStroke, &[DVec2])> =
             chains.iter().zip(0..).flat_map(|(chains, line)| chains.strokes(line)).collect();
         if lines.separate {
             for (_, points) in &strokes {
-                drawing.push(StrokeKind::Grid, 0, points.iter().copied());
+                drawing.push_part(StrokeKind::Grid, part, points.iter().copied());
             }
             continue;
         }
@@ -82,9 +85,9 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLi
         for (stroke, is_backwards) in order(&ends) {
             let points = strokes[stroke].1.iter().copied();
             if is_backwards {
-                drawing.push(StrokeKind::Grid, 0, points.rev());
+                drawing.push_part(StrokeKind::Grid, part, points.rev());
             } else {
-                drawing.push(StrokeKind::Grid, 0, points);
+                drawing.push_part(StrokeKind::Grid, part, points);
             }
         }
     }

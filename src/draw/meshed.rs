@@ -4,13 +4,14 @@
 use super::DrawOutput;
 use crate::camera::Camera;
 use crate::chain::{ChainOptions, chain};
-use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
+use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, SelectedLine, ViewedScene};
 use crate::drafting::Drafted;
 use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, solve};
 use crate::engines::surface::{max_min, tin};
 use crate::engines::visibility::Visibility;
+use crate::model::scene::Scene;
 use crate::predicates::Sign;
-use crate::strokes::StrokeKind;
+use crate::strokes::{StrokeKind, SurfacePart};
 use crate::surface::LinedScene;
 use crate::timing::{Seconds, timed};
 
@@ -108,9 +109,20 @@ pub(super) fn view<'a>(
     }
     if selection != LineSelection::NONE {
         let of_the_view = ViewedScene::new(scene, camera, selection, DEFAULT_CREASE_DEG);
-        edges.extend_from_slice(of_the_view.selected());
+        edges.extend(of_the_view.selected().iter().map(|line| in_sheet(scene, *line)));
     }
     ViewedScene::with_edges(scene, camera, edges)
+}
+
+/// A fold or a piece of the border with the sheet that it belongs to. Lines of intersection belong to none.
+fn in_sheet(scene: &Scene, line: SelectedLine) -> SelectedLine {
+    if !matches!(line.kind, StrokeKind::Silhouette | StrokeKind::Boundary) {
+        return line;
+    }
+    let parts = scene.mesh().face_parts();
+    let face = scene.topology().uses(line.edge).first().map(|used| used.face() as usize);
+    let sheet = face.and_then(|face| parts.get(face)).map_or(1, |part| *part as u16 + 1);
+    SelectedLine { part: SurfacePart { sheet, ..line.part }, ..line }
 }
 
 /// The spans of edges seen from above, and of those seen from below.

@@ -17,7 +17,7 @@ use super::grid::{Grid, GridError, check_ranges, check_size, evenly};
 use super::height_function::HeightFunction;
 use super::lined_mesh::{LatticeLines, LinedMesh};
 use super::places::Places;
-use crate::strokes::StrokeKind;
+use crate::strokes::{GridFamily, StrokeKind};
 use crate::surface::formula::Formula;
 
 /// How often the edge on which the rim lies is halved: then it is known to the last bit of an edge
@@ -238,7 +238,8 @@ impl LinedMesh {
             let along_row = a.1 == b.1 && rows[a.1 as usize];
             let along_column = a.0 == b.0 && columns[a.0 as usize];
             if number != base + edge[0] && (along_row || along_column) {
-                self.push_line([base + edge[0], number], StrokeKind::Grid);
+                let family = if along_row { GridFamily::AlongX } else { GridFamily::AlongY };
+                self.push_line([base + edge[0], number], StrokeKind::Grid, Some(family));
             }
         }
         let draws_rim = lines.along_rows || lines.along_columns;
@@ -276,7 +277,7 @@ impl LinedMesh {
                         if let (true, &[a, b]) = (draws_rim && polygon.len() > 2, &cut[..])
                             && a != b
                         {
-                            self.push_line([a, b], StrokeKind::Boundary);
+                            self.push_line([a, b], StrokeKind::Boundary, None);
                         }
                     }
                 }

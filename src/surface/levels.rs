@@ -18,7 +18,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::crossings::{Crossing, places};
 use super::height_function::HeightFunction;
 use super::lined_mesh::{LinedMesh, SurfaceLine, sorted};
-use crate::strokes::StrokeKind;
+use crate::strokes::{StrokeKind, SurfacePart};
 
 /// A sample of a function that is closer to a level than this part of the rise to its neighbors is at the
 /// level, but for rounding. On paper this is less than a millionth of a cell.
@@ -60,18 +60,45 @@ impl LinedMesh {
         };
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut curves = Vec::new();
-        for corners in &self.triangles {
-            cutter.cut(*corners, &mut triangles, &mut curves);
-        }
+        let mut curve_lines = Vec::new();
+        let mut firsts = Vec::with_capacity(self.sheets.len());
         // A ridge at a level is found from both of its sides.
         let mut seen = FxHashSet::default();
-        curves.retain(|ends| seen.insert(*ends));
-        let mut lines = Vec::with_capacity(self.lines.len() + curves.len());
+        for (k, corners) in self.triangles.iter().enumerate() {
+            while self.sheets.get(firsts.len()).is_some_and(|sheet| sheet.first_triangle <= k) {
+                firsts.push(triangles.len());
+            }
+            curves.clear();
+            cutter.cut(*corners, &mut triangles, &mut curves);
+            for (ends, level) in &curves {
+                if seen.insert(*ends) {
+                    let [sheet, level] = [firsts.len(), level + 1]
+                        .map(|number| u16::try_from(number).unwrap_or(u16::MAX));
+                    let part = SurfacePart { sheet, level, family: None };
+                    curve_lines.push(SurfaceLine { ends: *ends, kind: StrokeKind::Level, part });
+                }
+            }
+        }
+        firsts.resize(self.sheets.len(), triangles.len());
+        for (sheet, first_triangle) in self.sheets.iter_mut().zip(firsts) {
+            sheet.first_triangle = first_triangle;
+        }
+        let mut lines = Vec::with_capacity(self.lines.len() + curve_lines.len());
         for line in &self.lines {
             cutter.split(*line, &mut lines);
         }
-        lines.extend(curves.into_iter().map(|ends| SurfaceLine { ends, kind: StrokeKind::Level }));
+        lines.extend(curve_lines);
         (self.positions, self.triangles, self.lines) = (cutter.positions, triangles, lines);
+    }
+
+    /// Makes curves index lines that `is_index` is true for, by the numbers of their levels, from 1 for the
+    /// lowest.
+    pub fn mark_index_levels(&mut self, is_index: impl Fn(u16) -> bool) {
+        for line in &mut self.lines {
+            if line.kind == StrokeKind::Level && is_index(line.part.level) {
+                line.kind = StrokeKind::Index;
+            }
+        }
     }
 
     /// The sheets that are traced on a function, each with its triangles.
@@ -159,7 +186,7 @@ impl LinedMesh {
             for &[a, b, c] in &self.triangles[triangles] {
                 for edge in [[a, b], [b, c], [c, a]].map(|ends| self.by_height(ends)) {
                     let [low, high] = edge.map(|vertex| self.positions[vertex as usize]);
-                    if !is_one_of(levels, high.z) {
+                    if number_of(levels, high.z).is_none() {
                         continue;
                     }
                     edges.entry(edge).or_insert_with(|| {
@@ -212,9 +239,9 @@ impl LinedMesh {
     }
 }
 
-/// Whether a height is that of a level; −0 is 0.
-fn is_one_of(levels: &[f64], height: f64) -> bool {
-    levels.binary_search_by(|level| level.total_cmp(&(height + 0.0))).is_ok()
+/// The number of the level at a height; −0 is 0.
+fn number_of(levels: &[f64], height: f64) -> Option<usize> {
+    levels.binary_search_by(|level| level.total_cmp(&(height + 0.0))).ok()
 }
 
 /// Splits a triangle at points on its sides: that between corners 0 and 1, 1 and 2, 2 and 0.
@@ -304,17 +331,24 @@ impl Cutter<'_> {
         vertex
     }
 
-    fn cut(&mut self, corners: [u32; 3], out: &mut Vec<[u32; 3]>, curves: &mut Vec<[u32; 2]>) {
+    fn cut(
+        &mut self,
+        corners: [u32; 3],
+        out: &mut Vec<[u32; 3]>,
+        curves: &mut Vec<([u32; 2], usize)>,
+    ) {
         let heights = corners.map(|v| self.z(v));
         let low = heights.into_iter().fold(f64::INFINITY, f64::min);
         let high = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
         // Half-open: a vertex at the level counts as above it, so that a plateau is outlined along
         // its lower side only, and a ridge at the level is one line.
-        if low < high && is_one_of(self.levels, high) {
+        if low < high
+            && let Some(level) = number_of(self.levels, high)
+        {
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 if self.z(a) == high && self.z(b) == high {
-                    curves.push([a.min(b), a.max(b)]);
+                    curves.push(([a.min(b), a.max(b)], level));
                 }
             }
         }
@@ -343,7 +377,7 @@ impl Cutter<'_> {
                 }
             }
             if let &[a, b] = &ends[..] {
-                curves.push([a, b]);
+                curves.push(([a, b], level));
             }
             fan(&lower, out);
             above = upper;

@@ -9,9 +9,9 @@ use super::height_function::HeightFunction;
 use super::places::Places;
 use super::split_cells::{Center, Splitting};
 use crate::classify::SelectedLine;
-use crate::model::mesh::{Mesh, MeshError, PolygonSoup};
+use crate::model::mesh::{Mesh, MeshError, MeshPart, PolygonSoup};
 use crate::model::scene::Scene;
-use crate::strokes::StrokeKind;
+use crate::strokes::{GridFamily, StrokeKind, SurfacePart};
 
 /// Points on the border of a parametric surface that are closer than this fraction of its largest
 /// coordinate are one point, so that a torus closes although sin 2π is rounded. If it is smaller, seams
@@ -43,6 +43,7 @@ pub(super) struct Sheet {
 pub(super) struct SurfaceLine {
     pub(super) ends: [u32; 2],
     pub(super) kind: StrokeKind,
+    pub(super) part: SurfacePart,
 }
 
 /// Which lines of a lattice are drawn.
@@ -188,11 +189,14 @@ impl LinedMesh {
             }
         }
         let [columns, rows] = lines.drawn((n_columns, n_rows), places);
-        let mut push = |a: usize, b: usize| {
+        let sheet = self.sheet();
+        let mut push = |a: usize, b: usize, family: GridFamily| {
             if is_hole(a) || is_hole(b) {
                 return;
             }
-            let mut push = |ends| self.lines.push(SurfaceLine { ends, kind: StrokeKind::Grid });
+            let part = SurfacePart { sheet, family: Some(family), ..SurfacePart::default() };
+            let mut push =
+                |ends| self.lines.push(SurfaceLine { ends, kind: StrokeKind::Grid, part });
             match between(a, b) {
                 Some(middle) => {
                     push([id(a), middle]);
@@ -204,10 +208,10 @@ impl LinedMesh {
         for k in 0..points.len() {
             let (i, j) = (k % n_columns, k / n_columns);
             if i + 1 < n_columns && rows[j] {
-                push(k, k + 1);
+                push(k, k + 1, GridFamily::AlongX);
             }
             if j + 1 < n_rows && columns[i] {
-                push(k, k + n_columns);
+                push(k, k + n_columns, GridFamily::AlongY);
             }
         }
     }
@@ -223,15 +227,27 @@ impl LinedMesh {
         }
     }
 
-    pub(super) fn push_line(&mut self, ends: [u32; 2], kind: StrokeKind) {
-        self.lines.push(SurfaceLine { ends, kind });
+    /// The number of the sheet that is being added, from 1; 0 before the first.
+    pub(super) fn sheet(&self) -> u16 {
+        u16::try_from(self.sheets.len()).unwrap_or(u16::MAX)
+    }
+
+    pub(super) fn push_line(
+        &mut self,
+        ends: [u32; 2],
+        kind: StrokeKind,
+        family: Option<GridFamily>,
+    ) {
+        let part = SurfacePart { sheet: self.sheet(), level: 0, family };
+        self.lines.push(SurfaceLine { ends, kind, part });
     }
 
     pub(super) fn push_triangle(&mut self, corners @ [a, b, c]: [u32; 3], is_lined: bool) {
         self.triangles.push(corners);
         if is_lined {
-            let ends = [[a, b], [b, c], [c, a]].into_iter();
-            self.lines.extend(ends.map(|ends| SurfaceLine { ends, kind: StrokeKind::Mesh }));
+            for ends in [[a, b], [b, c], [c, a]] {
+                self.push_line(ends, StrokeKind::Mesh, None);
+            }
         }
     }
 
@@ -246,8 +262,19 @@ impl LinedMesh {
     /// Coordinates that are not finite, or more than a mesh can have.
     pub fn into_mesh(self) -> Result<Mesh, MeshError> {
         let mut soup = PolygonSoup { positions: self.positions, ..PolygonSoup::default() };
-        for corners in &self.triangles {
+        // Faces know their sheets by their parts.
+        let n_sheets = self.sheets.len();
+        soup.parts = vec![MeshPart::default(); if n_sheets > 1 { n_sheets } else { 0 }];
+        let mut sheet = 0;
+        for (triangle, corners) in self.triangles.iter().enumerate() {
             soup.push_face(corners);
+            if n_sheets > 1 {
+                let is_past = |sheet: &Sheet| sheet.first_triangle <= triangle;
+                while self.sheets.get(sheet + 1).is_some_and(is_past) {
+                    sheet += 1;
+                }
+                soup.face_parts.push(sheet as u32);
+            }
         }
         Ok(Mesh::new(soup)?.0)
     }
@@ -270,7 +297,9 @@ impl LinedMesh {
         let lines = ends
             .iter()
             .zip(&lines)
-            .filter_map(|(ends, line)| Some(SelectedLine { edge: edge(*ends)?, kind: line.kind }))
+            .filter_map(|(ends, line)| {
+                Some(SelectedLine { edge: edge(*ends)?, kind: line.kind, part: line.part })
+            })
             .collect();
         Ok(LinedScene { scene, lines })
     }
