@@ -216,7 +216,9 @@ pub use read::{ModelFormat, Warning};
 
 // A surface.
 pub use axes::{Axes, AxesStyle, BoxFront, TickRule, Titles, ZAxis};
-pub use draw::surface::{Certificate, Levels, SurfaceEngine, SurfaceLines, SurfaceNote};
+pub use draw::surface::{
+    Certificate, LabelSide, Labels, Levels, SurfaceEngine, SurfaceLines, SurfaceNote,
+};
 pub use engines::surface::CellOrder;
 pub use surface::formula::Formula;
 pub use surface::{Aspect, Grid, HeightField, HeightOptions, SampledSurface, Surface};

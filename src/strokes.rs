@@ -66,6 +66,19 @@ pub enum GridFamily {
     AlongY,
 }
 
+impl GridFamily {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::AlongX, Self::AlongY];
+
+    /// The name used on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AlongX => "x",
+            Self::AlongY => "y",
+        }
+    }
+}
+
 impl StrokeKind {
     /// All kinds.
     pub const ALL: [Self; 17] = [

@@ -7,7 +7,7 @@ use super::{Error, Sheet};
 use crate::camera::framing::View;
 use crate::draw::surface::{SurfaceError, SurfaceLines, SurfaceOutput, draw_surface};
 use crate::model::scene::Scene;
-use crate::page::{Page, PageOptions, PenRule, PlotOptions};
+use crate::page::{Page, PageOptions, PenRule, PlotOptions, with_index_pen};
 use crate::strokes::Strokes;
 use crate::surface::{HeightField, HeightOptions, LatticeLines, Surface, read_heights};
 
@@ -120,13 +120,19 @@ impl SurfaceDrawing<'_> {
     /// The surface cannot be sampled or drawn as asked, the view makes no camera, or the drawing cannot
     /// be placed on the page.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
-        let mut lines = self.lines.clone();
+        let tells_apart = self.plot.pens.iter().any(|rule| rule.drawn.tells_kinds_apart());
+        let apart_by_kind = self.lines.apart_by_kind || tells_apart;
+        let mut lines = SurfaceLines { apart_by_kind, ..self.lines.clone() };
         if let Some(axes) = &mut lines.axes {
             axes.pen_width_mm = self.plot.pen_width_mm;
         }
-        let SurfaceOutput { drawn, page, notes, .. } =
+        let SurfaceOutput { drawn, page, notes, has_index_levels, .. } =
             draw_surface(self.surface, &self.view, &lines, &page.into())?;
-        Ok(Sheet::new(page.plot(&drawn.drawing, self.plot.clone())).with_notes(notes))
+        let mut plot = self.plot.clone();
+        if has_index_levels {
+            plot.pens = with_index_pen(plot.pens, plot.pen_width_mm);
+        }
+        Ok(Sheet::new(page.plot(&drawn.drawing, plot)).with_notes(notes))
     }
 
     /// The strokes with their kinds, axes included, in image coordinates (y up), and the page, which

@@ -59,12 +59,14 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLi
     let mut families: Vec<(GridFamily, Vec<GridLine>)> = Vec::new();
     if lines.along_x {
         let line = |j| GridLine { first: j * nx, step: 1, edge: j * (nx - 1), n: nx };
-        families.push((GridFamily::AlongX, chosen(ny, Axis::Second).into_iter().map(line).collect()));
+        families
+            .push((GridFamily::AlongX, chosen(ny, Axis::Second).into_iter().map(line).collect()));
     }
     if lines.along_y {
         let along_x = ny * (nx - 1);
         let line = |i| GridLine { first: i, step: nx, edge: along_x + i * (ny - 1), n: ny };
-        families.push((GridFamily::AlongY, chosen(nx, Axis::First).into_iter().map(line).collect()));
+        families
+            .push((GridFamily::AlongY, chosen(nx, Axis::First).into_iter().map(line).collect()));
     }
     let mut drawing = Strokes::default();
     for (family, lines_of_family) in &families {

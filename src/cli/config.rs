@@ -137,7 +137,7 @@ pub(super) fn is_typed(option: &str) -> bool {
 /// Parses what was typed together with the settings. Bad usage ends the program.
 pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn Error>> {
     command.build();
-    let typed: Vec<OsString> = std::env::args_os().collect();
+    let typed = usage::spelled_out(&command, std::env::args_os().collect());
     let matches = usage::parse_in_part(&command, &typed);
     let Some((name, chosen)) = matches.subcommand().filter(|(name, _)| COMMANDS.contains(name))
     else {
@@ -188,7 +188,7 @@ pub(super) fn with_settings(mut command: Command) -> Result<ArgMatches, Box<dyn 
     let place = place.map_or(all.len(), |place| place + 1);
     all.splice(place..place, added);
     let result = command.clone().try_get_matches_from(&all);
-    let _ = ARGUMENTS.set(all.split_off(1));
+    let _ = ARGUMENTS.set(all.split_off(1).into_iter().map(usage::as_typed).collect());
     result.map_err(|error| {
         if origins.is_empty() {
             error.exit();

@@ -63,7 +63,9 @@ pub(super) struct PlotArgs {
     /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer. For AxiDraw,
     /// speed=PERCENT, height=PERCENT, delay=MS and pause may follow, as in
     /// visible=1:0.3mm:black:speed=30:pause; they are written into the layer's label in SVG. WHAT is
-    /// visible, hidden, outline, hidden1, hidden2 … for lines behind that many faces, or a kind of line.
+    /// visible, hidden, outline, hidden1, hidden2 … for lines behind that many faces, or a kind of line. For
+    /// surfaces it is also x, y, sheet2 for all lines of the second sheet, or both as in sheet2.level.
+    /// The most special one draws a line.
     #[arg(long = "pen", value_name = "PEN", value_parser = values::pen)]
     pens: Vec<PenText>,
 }
@@ -137,8 +139,7 @@ pub(super) struct Finished {
 impl Plotting {
     /// Whether kinds of line or hidden levels have their own pens.
     pub(super) fn has_pens_by_kind(&self) -> bool {
-        let by_kind = |drawn| matches!(drawn, PenRole::Kind(_) | PenRole::HiddenLevel(_));
-        self.apart_by_kind || self.pens.iter().any(|pen| by_kind(pen.drawn))
+        self.apart_by_kind || self.pens.iter().any(|pen| pen.drawn.tells_kinds_apart())
     }
 
     /// How close ink must be to other ink to be left out, if that was set.

@@ -15,7 +15,9 @@ use hiddenline::stages::draw::surface::{
 use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions};
 use hiddenline::stages::hatch::{HatchOptions, HatchPage, hatch};
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
-use hiddenline::stages::page::{PageOptions, PlotOptions, with_hatch_pen, with_underside_pen};
+use hiddenline::stages::page::{
+    PageOptions, PlotOptions, with_hatch_pen, with_index_pen, with_underside_pen,
+};
 use hiddenline::stages::strokes::HiddenLines;
 use hiddenline::stages::surface::Surface;
 use hiddenline::stages::timing::timed;
@@ -113,7 +115,7 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
         extent: drawing.extent,
         options: job.page,
     };
-    run.draw(&drawing.drawn.drawing, &sheet, plot_options(job), &usual)
+    run.draw(&drawing.drawn.drawing, &sheet, plot_options(job, drawing.has_index_levels), &usual)
 }
 
 /// Why the surface cannot be drawn, with the options that mend it.
@@ -122,6 +124,7 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
         SurfaceError::Sampling(error) => job.sheets.sampling_error(error),
         SurfaceError::View(error) => with_remedy(error),
         SurfaceError::NoCells => with_samples(error),
+        SurfaceError::TooManyLevels(_) => format!("{error}; give a larger step to --levels"),
         SurfaceError::TooManyTriangles(_) => format!("{error}; give fewer --samples or --levels"),
         SurfaceError::NoLevels(none) => {
             format!("{}; --lines both draws grid lines", without_levels(none))
@@ -170,9 +173,10 @@ fn without_levels(none: &NoLevels) -> String {
     }
 }
 
-fn plot_options(job: &Job) -> PlotOptions {
+fn plot_options(job: &Job, has_index: bool) -> PlotOptions {
     let pens = job.output.plotting.pens(job.pen_width_mm);
     let pens = if job.lines.underside { with_underside_pen(pens, job.pen_width_mm) } else { pens };
+    let pens = if has_index { with_index_pen(pens, job.pen_width_mm) } else { pens };
     let pens = if job.hatch.is_some() { with_hatch_pen(pens, job.pen_width_mm) } else { pens };
     PlotOptions {
         pen_width_mm: job.pen_width_mm,

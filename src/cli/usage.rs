@@ -1,9 +1,12 @@
 //! Settings of clap for all options at once, and friendlier messages for its errors.
 
+use std::ffi::OsString;
+
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};
 
 use super::Cli;
+use super::values::ROUND_STEP;
 
 /// Options of other programs for the size of a picture.
 const SIZES: [&str; 5] = ["--width", "--height", "--size", "--resolution", "--pixels"];
@@ -30,9 +33,70 @@ pub(super) fn command() -> Command {
     })
 }
 
+/// What was typed for `surface`, in a form that clap takes: formulas may begin with a minus wherever they
+/// stand, and `--levels` needs no value.
+pub(super) fn spelled_out(program: &Command, mut typed: Vec<OsString>) -> Vec<OsString> {
+    let is_command = |word: &OsString| word == "surface";
+    let (Some(first), Some(command)) =
+        (typed.iter().position(is_command), program.find_subcommand("surface"))
+    else {
+        return typed;
+    };
+    let takes_value = |word: &str| {
+        let of = |arg: &&clap::Arg| {
+            let long = arg.get_long().is_some_and(|long| word.strip_prefix("--") == Some(long));
+            let short = arg.get_short().is_some_and(|short| word == format!("-{short}"));
+            long || short
+        };
+        command.get_arguments().find(of).is_some_and(|arg| arg.get_action().takes_values())
+    };
+    let is_short = |word: &str| {
+        let short = word.strip_prefix('-').and_then(|rest| rest.chars().next());
+        if short.is_none() {
+            return false;
+        }
+        let known = command.get_arguments().find(|arg| arg.get_short() == short);
+        // A value may follow at once, as in -oball.svg.
+        known.is_some_and(|arg| word.len() == 2 || arg.get_action().takes_values())
+            || ["-h", "-V"].contains(&word)
+    };
+    for k in first + 1..typed.len() {
+        let words = [k.checked_sub(1), Some(k), Some(k + 1)].map(|k| {
+            k.and_then(|k| typed.get(k)).and_then(|word| word.to_str()).map(str::to_owned)
+        });
+        let [before, Some(word), after] = words else { continue };
+        let is_value = before.is_some_and(|word| takes_value(&word));
+        if is_value {
+            continue;
+        }
+        if word == "--" {
+            break;
+        }
+        let is_alone = after.is_none_or(|word| word.starts_with("--") || is_short(&word));
+        if word == "--levels" && is_alone {
+            typed[k] = format!("--levels={ROUND_STEP}").into();
+        } else if word.starts_with('-')
+            && word.len() > 1
+            && !word.starts_with("--")
+            && !is_short(&word)
+        {
+            typed[k] = format!(" {word}").into();
+        }
+    }
+    typed
+}
+
+/// A word as it was before [`spelled_out`] put a blank before a formula.
+pub(super) fn as_typed(word: OsString) -> OsString {
+    match word.to_str().and_then(|word| word.strip_prefix(' ')) {
+        Some(formula) if formula.starts_with('-') => formula.into(),
+        _ => word,
+    }
+}
+
 /// Parses what was typed. Bad usage ends the program, except for missing arguments, which settings may
 /// provide.
-pub(super) fn parse_in_part(command: &Command, typed: &[std::ffi::OsString]) -> ArgMatches {
+pub(super) fn parse_in_part(command: &Command, typed: &[OsString]) -> ArgMatches {
     let parse = |command: Command| command.try_get_matches_from(typed);
     let parsed = parse(command.clone()).or_else(|error| match error.kind() {
         ErrorKind::MissingRequiredArgument => parse(command.clone().ignore_errors(true)),
@@ -50,11 +114,7 @@ pub(super) fn exit_with(name: &str, message: &str) -> ! {
 }
 
 /// Suggests an option instead of an unknown one, where clap only suggests to take it for a file name.
-fn with_hints(
-    mut error: clap::Error,
-    command: &Command,
-    typed: &[std::ffi::OsString],
-) -> clap::Error {
+fn with_hints(mut error: clap::Error, command: &Command, typed: &[OsString]) -> clap::Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }

@@ -11,9 +11,12 @@ use hiddenline::stages::model::smooth::SmoothParts;
 use hiddenline::stages::optimize::Effort;
 use hiddenline::stages::page::{Dash, LayerControls, PenRole, parse_length_mm};
 use hiddenline::stages::shading::preview::LARGEST_SIDE;
-use hiddenline::stages::strokes::StrokeKind;
+use hiddenline::stages::strokes::{GridFamily, StrokeKind};
 
 use super::suggestion::suggestion;
+
+/// What `--levels` stands for without a value.
+pub(super) const ROUND_STEP: &str = "round";
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
@@ -247,13 +250,29 @@ fn layer_controls(parts: &[&str]) -> Result<LayerControls, String> {
 pub(super) fn pen_roles() -> impl Iterator<Item = PenRole> {
     let hidden = [PenRole::Hidden, PenRole::HiddenLevel(1)];
     let visible = [PenRole::Visible, PenRole::Outline, PenRole::Underside];
-    hidden.into_iter().chain(visible).chain(StrokeKind::ALL.map(PenRole::Kind))
+    let families = GridFamily::ALL.map(PenRole::Family);
+    let roles = hidden.into_iter().chain(visible).chain(StrokeKind::ALL.map(PenRole::Kind));
+    roles.chain(families).chain([PenRole::Sheet(1)])
 }
 
 fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
     let level = name.strip_prefix("hidden").and_then(|level| level.parse().ok());
     if let Some(level @ 1..=99) = level {
         return Ok(PenRole::HiddenLevel(level));
+    }
+    let (sheet, line) = name.split_once('.').unwrap_or((name, ""));
+    let sheet = sheet.strip_prefix("sheet").and_then(|sheet| sheet.parse().ok());
+    if let Some(sheet @ 1..) = sheet {
+        return match (line, drawn_by_pen(line)) {
+            ("", _) => Ok(PenRole::Sheet(sheet)),
+            (_, Ok(PenRole::Kind(kind))) => Ok(PenRole::KindOfSheet(sheet, kind)),
+            (_, Ok(PenRole::Family(family))) => Ok(PenRole::FamilyOfSheet(sheet, family)),
+            (_, Ok(_)) => Err(format!("`{line}` is no kind of line of a sheet")),
+            (_, Err(error)) => Err(error),
+        };
+    }
+    if name == "border" {
+        return Ok(PenRole::Kind(StrokeKind::Boundary));
     }
     pen_roles().find(|drawn| drawn.name() == name).ok_or_else(|| {
         let names: Vec<_> = pen_roles().map(PenRole::name).collect();

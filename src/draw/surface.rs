@@ -12,22 +12,32 @@ mod bound;
 mod certificate;
 mod certified_cells;
 mod certified_line;
+mod dashes;
 mod error;
 mod grid;
+mod labels;
+mod levels;
 mod options;
 mod smoothness;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 pub use self::around::{Around, axes_box, surround};
 pub use self::certificate::Certificate;
 pub use self::error::{MAX_TRIANGLES, NoLevels, SurfaceError, SurfaceNote};
-pub use self::options::{DEFAULT_SMOOTHNESS_MM, Levels, SurfaceEngine, SurfaceLines};
+pub use self::options::{
+    DEFAULT_LABEL_HEIGHT_MM, DEFAULT_SMOOTHNESS_MM, LabelSide, Labels, Levels, SurfaceEngine,
+    SurfaceLines,
+};
 
+use self::dashes::dash_negative;
 use self::grid::{draw_grid, grid_to_draw};
+use self::labels::{Labelling, label};
+use self::levels::LevelSet;
 use self::smoothness::{SmoothSurface, sample};
 use super::turning::{TurningLines, surface_turning_lines};
 use super::{DrawOutput, MeshSize, meshed};
+use crate::axes::is_straight_down;
 use crate::camera::framing::View;
 use crate::camera::{Camera, Projection};
 use crate::engines::edge::LineEngine;
@@ -70,6 +80,8 @@ pub struct SurfaceOutput {
     /// Whether the strokes run along the lines of a grid already, with short pen-up travel and none on
     /// another, and are too many to be joined and ordered again in a moment.
     pub is_ordered: bool,
+    /// Whether some level curves are index lines.
+    pub has_index_levels: bool,
     /// The triangles between the samples, if they were to be kept.
     pub scene: Option<Scene>,
     ink: Ink,
@@ -130,13 +142,14 @@ pub fn draw_surface(
         }
         notes.push(SurfaceNote::NoLevels(none));
     }
+    let levels = LevelSet::new(lines, &surface)?;
     let grid = grid_to_draw(&surface, lines, &camera)?;
     if grid.is_none() && lines.order.is_some() {
         return Err(SurfaceError::Order);
     }
     let lined = match grid {
         Some(_) => None,
-        None => Some(timed(&mut seconds.topology, || lined(&surface, lines))?),
+        None => Some(timed(&mut seconds.topology, || lined(&surface, lines, &levels))?),
     };
     let extent = match &lined {
         Some(lined) => lined.scene.extent(&camera),
@@ -160,10 +173,25 @@ pub fn draw_surface(
     drawn.seconds += seconds;
     let drawing = &mut drawn.drawing;
     let ink = Ink::of(drawing, lines, &page);
+    let which = labels(lines, &levels, &camera);
+    if which != Labels::None {
+        let labelling =
+            Labelling { which, side: lines.label_side, height_mm: lines.label_height_mm };
+        let left = timed(&mut drawn.seconds.strokes, || {
+            label(drawing, &around.strokes, &levels, &labelling, page.mm_per_image_unit())
+        });
+        if !left.is_empty() {
+            let texts = left.into_iter().map(|level| levels.text(level));
+            notes.push(SurfaceNote::Unlabelled(texts.collect()));
+        }
+    }
+    if lines.negative_dashed && !lines.exact {
+        *drawing = dash_negative(drawing, &levels, page.mm_per_image_unit());
+    }
     let scene = match lined {
         Some(lined) => Some(lined.scene),
         None if lines.keep_scene || !around.layout.wires().is_empty() => {
-            Some(self::lined(&surface, lines)?.scene)
+            Some(self::lined(&surface, lines, &levels)?.scene)
         }
         None => None,
     };
@@ -173,6 +201,7 @@ pub fn draw_surface(
             None => around.strokes,
         });
     }
+    let has_index_levels = levels.has_index();
     let is_edge_on = camera.projection() == Projection::Orthographic && camera.forward().z == 0.0;
     let is_ordered = grid.is_some() && !is_edge_on && drawing.n_points() > FEW_POINTS;
     let samples = surface.to_string();
@@ -187,6 +216,7 @@ pub fn draw_surface(
         certificate,
         notes,
         is_ordered,
+        has_index_levels,
         scene,
         ink,
     })
@@ -218,6 +248,18 @@ impl Ink {
     }
 }
 
+/// Which level curves are labelled.
+fn labels(lines: &SurfaceLines, levels: &LevelSet, camera: &Camera) -> Labels {
+    let is_level = lines.levels.is_some() && !lines.exact;
+    match lines.labels {
+        _ if !is_level => Labels::None,
+        Some(labels) => labels,
+        None if !is_straight_down(camera) || lines.has_grid_lines() => Labels::None,
+        None if levels.has_index() => Labels::Index,
+        None => Labels::All,
+    }
+}
+
 /// Why there are no level curves, if they are to be drawn.
 fn without_levels(surface: &SampledSurface, lines: &SurfaceLines) -> Option<NoLevels> {
     let levels = lines.levels.as_ref()?;
@@ -240,7 +282,11 @@ fn brief(number: f64) -> f64 {
 }
 
 /// The surface as a scene, with the chosen grid lines and level curves.
-fn lined(surface: &SampledSurface, lines: &SurfaceLines) -> Result<LinedScene, SurfaceError> {
+fn lined(
+    surface: &SampledSurface,
+    lines: &SurfaceLines,
+    levels: &LevelSet,
+) -> Result<LinedScene, SurfaceError> {
     let lattices = surface.lattices();
     // Scattered points have no grid lines.
     let triangles = lines.mesh || lattices.is_empty() && lines.has_grid_lines();
@@ -253,15 +299,16 @@ fn lined(surface: &SampledSurface, lines: &SurfaceLines) -> Result<LinedScene, S
         .iter()
         .map(|lattice| (lattice.n_columns - 1) as u64 * lattice.n_rows().saturating_sub(1) as u64);
     check(2 * cells.sum::<u64>())?;
-    let levels = lines.levels.as_ref().map(|levels| heights(levels, surface));
-    let split_at = levels.as_deref().filter(|_| !lines.exact).unwrap_or_default();
+    let heights = levels.heights();
+    let split_at = if lines.exact { &[] } else { &heights[..] };
     let mut mesh = surface.lined(&chosen, split_at);
     if mesh.n_triangles() == 0 {
         return Err(SurfaceError::NoCells);
     }
-    if let Some(levels) = &levels {
-        check(mesh.n_pieces_with_levels(levels))?;
-        mesh.add_levels(levels);
+    if lines.levels.is_some() {
+        check(mesh.n_pieces_with_levels(&heights))?;
+        mesh.add_levels(&heights);
+        mesh.mark_index_levels(|number| levels.is_index(number));
     }
     let LinedScene { scene, lines: drawn } = mesh.into_scene()?;
     let scene = if lines.intersections { scene.with_intersections() } else { scene };
@@ -278,8 +325,9 @@ pub fn for_turning(
     lines: &SurfaceLines,
 ) -> Result<TurningSurface, SurfaceError> {
     let sampled = surface.sample()?;
-    let lined = lined(&sampled, lines)?;
-    Ok(TurningSurface { lined, sampled })
+    let levels = LevelSet::new(lines, &sampled)?;
+    let lined = lined(&sampled, lines, &levels)?;
+    Ok(TurningSurface { lined, sampled, has_index_levels: levels.has_index() })
 }
 
 /// A surface made ready to be turned.
@@ -287,9 +335,15 @@ pub fn for_turning(
 pub struct TurningSurface {
     lined: LinedScene,
     sampled: SampledSurface,
+    has_index_levels: bool,
 }
 
 impl TurningSurface {
+    /// Whether some level curves are index lines.
+    pub fn has_index_levels(&self) -> bool {
+        self.has_index_levels
+    }
+
     /// The triangles.
     pub fn scene(&self) -> &Scene {
         &self.lined.scene
@@ -316,20 +370,6 @@ impl TurningSurface {
     }
 }
 
-/// The heights of level curves as they are drawn.
-fn heights(levels: &Levels, surface: &SampledSurface) -> Vec<f64> {
-    let (low, high): (DVec3, DVec3) = surface.bounds();
-    match levels {
-        Levels::Count(count) => {
-            let n = f64::from(*count) + 1.0;
-            (1..=*count).map(|k| low.z + (high.z - low.z) * f64::from(k) / n).collect()
-        }
-        Levels::At(heights) => {
-            heights.iter().map(|z| surface.scales()[2].drawn(*z)).filter(|z| !z.is_nan()).collect()
-        }
-    }
-}
-
 fn meshed_options(lines: &SurfaceLines) -> meshed::MeshedOptions {
     meshed::MeshedOptions {
         engine: match lines.engine {
@@ -344,7 +384,8 @@ fn meshed_options(lines: &SurfaceLines) -> meshed::MeshedOptions {
         border: lines.border,
         exact: lines.exact,
         underside: lines.underside,
-        apart_by_kind: lines.apart_by_kind,
+        // What is done to some level curves must not be done to the lines that they go on into.
+        apart_by_kind: lines.apart_by_kind || lines.levels.is_some() && !lines.exact,
         shortest_stroke_mm: lines.shortest_stroke_mm,
     }
 }

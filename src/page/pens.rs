@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::classify::LineSelection;
 use crate::plot::{Layer, Pen, Polylines};
-use crate::strokes::{HiddenLines, Stroke, StrokeKind, Strokes};
+use crate::strokes::{GridFamily, HiddenLines, Stroke, StrokeKind, Strokes, SurfacePart};
 
 use super::{Dash, PlotOptions};
 
@@ -23,6 +23,14 @@ pub enum PenRole {
     Underside,
     /// Visible strokes of one kind.
     Kind(StrokeKind),
+    /// Visible grid lines of one family.
+    Family(GridFamily),
+    /// All visible lines of the sheet with this number, from 1.
+    Sheet(u16),
+    /// Visible strokes of one kind that belong to a sheet.
+    KindOfSheet(u16, StrokeKind),
+    /// Visible grid lines of one family that belong to a sheet.
+    FamilyOfSheet(u16, GridFamily),
 }
 
 impl PenRole {
@@ -35,21 +43,42 @@ impl PenRole {
             Self::Outline => "outline".into(),
             Self::Underside => "underside".into(),
             Self::Kind(kind) => kind.name().into(),
+            Self::Family(family) => family.name().into(),
+            Self::Sheet(sheet) => format!("sheet{sheet}").into(),
+            Self::KindOfSheet(sheet, kind) => format!("sheet{sheet}.{}", kind.name()).into(),
+            Self::FamilyOfSheet(sheet, family) => format!("sheet{sheet}.{}", family.name()).into(),
         }
     }
 
     /// What draws a stroke, where there are rules for what `has_rule` is true for: the most special
-    /// one, and for visible strokes the outline before the underside before the kind.
+    /// one, and for visible strokes the outline before the underside before the kind of a sheet, the kind,
+    /// and the sheet. A family is more special than all grid lines, and index lines are level curves.
     fn of(stroke: &Stroke, has_rule: impl Fn(Self) -> bool) -> Self {
-        let specials = if stroke.qi > 0 {
-            [Some(Self::HiddenLevel(stroke.qi)), None, None]
-        } else {
-            let outline = stroke.outline.then_some(Self::Outline);
-            let underside = stroke.underside.then_some(Self::Underside);
-            [outline, underside, Some(Self::Kind(stroke.kind))]
-        };
-        let usual = if stroke.qi > 0 { Self::Hidden } else { Self::Visible };
-        specials.into_iter().flatten().find(|role| has_rule(*role)).unwrap_or(usual)
+        if stroke.qi > 0 {
+            let level = Self::HiddenLevel(stroke.qi);
+            return if has_rule(level) { level } else { Self::Hidden };
+        }
+        let SurfacePart { sheet, family, .. } = stroke.part;
+        let sheet = Some(sheet).filter(|sheet| *sheet > 0);
+        let wider = (stroke.kind == StrokeKind::Index).then_some(StrokeKind::Level);
+        let specials = [
+            stroke.outline.then_some(Self::Outline),
+            stroke.underside.then_some(Self::Underside),
+            sheet.zip(family).map(|(sheet, family)| Self::FamilyOfSheet(sheet, family)),
+            sheet.map(|sheet| Self::KindOfSheet(sheet, stroke.kind)),
+            sheet.zip(wider).map(|(sheet, kind)| Self::KindOfSheet(sheet, kind)),
+            family.map(Self::Family),
+            Some(Self::Kind(stroke.kind)),
+            wider.map(Self::Kind),
+            sheet.map(Self::Sheet),
+        ];
+        specials.into_iter().flatten().find(|role| has_rule(*role)).unwrap_or(Self::Visible)
+    }
+
+    /// Whether lines of other kinds, parts of a surface or hidden levels must not be joined to those that it
+    /// draws.
+    pub fn tells_kinds_apart(self) -> bool {
+        !matches!(self, Self::Visible | Self::Hidden | Self::Outline | Self::Underside)
     }
 
     /// Whether it is about hidden strokes.
@@ -148,6 +177,9 @@ const HATCH_COLOR: &str = "#202020";
 /// As nearly black as these, and another color again.
 const SILHOUETTE_COLOR: &str = "#181818";
 
+/// As nearly black as these, and one more color.
+const INDEX_COLOR: &str = "#080808";
+
 /// Blue: easy to distinguish from the black of upper sides, for people and for programs.
 const UNDERSIDE_COLOR: &str = "#0000c0";
 
@@ -232,6 +264,18 @@ pub fn with_line_pens(
 /// its own.
 pub fn with_hatch_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
     add_pen(&mut rules, PenRole::Kind(StrokeKind::Hatch), width_mm, HATCH_COLOR.into());
+    rules
+}
+
+/// Adds the usual pen of index lines to `rules`, unless these have one: twice as wide as that of the other
+/// level curves.
+pub fn with_index_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
+    let rule = |drawn| rules.iter().rev().find(|rule| rule.drawn == drawn);
+    let of_levels = rule(PenRole::Kind(StrokeKind::Level));
+    let pen = of_levels.or_else(|| rule(PenRole::Visible)).map(|rule| rule.pen.clone());
+    let width_mm = 2.0 * pen.as_ref().map_or(width_mm, |pen| pen.width_mm);
+    let color = of_levels.and(pen).map_or(INDEX_COLOR.to_owned(), |pen| pen.color);
+    add_pen(&mut rules, PenRole::Kind(StrokeKind::Index), width_mm, color);
     rules
 }
 

@@ -166,7 +166,8 @@ impl HeightFunction {
             let dx = hx * (fy * fxy - fx * fyy) / determinant;
             let dy = hy * (fx * fxy - fy * fxx) / determinant;
             (x, y) = (x + dx, y + dy);
-            let is_inside = x > low.x && x < high.x && y > low.y && y < high.y;
+            // One on a side would make triangles without an area.
+            let is_inside = x > low.x + hx && x < high.x - hx && y > low.y + hy && y < high.y - hy;
             if !is_inside {
                 return None;
             }

@@ -1,7 +1,9 @@
 //! What is typed after `hiddenline surface`, and what it means.
 
 use clap::{Args, ValueEnum};
-use hiddenline::stages::draw::surface::{Levels, SurfaceEngine, SurfaceLines};
+use hiddenline::stages::draw::surface::{
+    DEFAULT_LABEL_HEIGHT_MM, LabelSide, Labels, Levels, SurfaceEngine, SurfaceLines,
+};
 use hiddenline::stages::engines::surface::CellOrder;
 use hiddenline::stages::surface::{Aspect, DEFAULT_SAMPLES};
 use hiddenline::stages::write::Format;
@@ -26,7 +28,7 @@ Examples:
       An even number of samples steps over the hole at the origin; sinc(r) has none.
   hiddenline surface \"-x^2 + y^2\" --samples 401 --every 10 -o saddle.svg
       Smooth curves: every tenth line of a fine grid.
-  hiddenline surface \"sqrt(9-r^2)\" \"(-sqrt(9-r^2))\" --where \"r<=3\" --aspect data -o ball.svg
+  hiddenline surface \"sqrt(9-r^2)\" \"-sqrt(9-r^2)\" --where \"r<=3\" --aspect data -o ball.svg
       Two sheets over a disc.
   hiddenline surface --grid heights.csv --view isometric -o terrain.svg
       Rows of numbers; the first row is the one with the smallest y.
@@ -69,7 +71,7 @@ struct ExprArgs {
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     #[arg(required_unless_present_any = ["grid", "points", "parametric"])]
     expression: Option<String>,
-    /// Further formulas, one for each sheet; put one that begins with a minus into parentheses
+    /// Further formulas, one for each sheet
     #[arg(value_name = "EXPR")]
     more: Vec<String>,
     #[command(flatten)]
@@ -86,10 +88,28 @@ struct LineArgs {
     /// sheets cross; mesh: all edges of its triangles.
     #[arg(long, value_enum, value_delimiter = ',')]
     lines: Vec<LineName>,
-    /// Level curves: how many, evenly spaced between the lowest and the highest point, or their
-    /// heights with commas between them (`5,` is the height 5)
-    #[arg(long, value_name = "N|LIST", value_parser = levels, allow_hyphen_values = true)]
+    /// Level curves: how many, evenly spaced between the lowest and the highest point; their heights with
+    /// commas between them (`5,` is the height 5); every:STEP; or nothing for a round step
+    ///
+    /// every:5:2 draws them at 2, 7, 12 and so on.
+    #[arg(long, value_name = "N|LIST|every:STEP[:OFFSET]", value_parser = levels)]
+    #[arg(allow_hyphen_values = true)]
     levels: Option<Levels>,
+    /// Draw every N-th level curve as an index line, twice as wide [default: 5 with every:STEP]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    index_every: Option<u16>,
+    /// Which level curves have their heights written into gaps [default: index or all from above]
+    ///
+    /// In views from above without grid lines the default is index, or all where there are no index lines;
+    /// otherwise it is none.
+    #[arg(long, value_enum)]
+    labels: Option<LabelName>,
+    /// Which way up labels are
+    #[arg(long, value_enum, default_value = "upright")]
+    label_side: LabelSideName,
+    /// How level curves below 0 are drawn
+    #[arg(long, value_enum, default_value = "solid")]
+    negative: Negative,
     /// Draw only every K-th line of a family, and the last one
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
     every: usize,
@@ -116,6 +136,32 @@ struct LineArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum LabelName {
+    /// Index lines
+    Index,
+    /// All level curves
+    All,
+    /// None
+    None,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum LabelSideName {
+    /// To be read from below or from the right
+    Upright,
+    /// With their tops uphill
+    Uphill,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Negative {
+    /// As the others
+    Solid,
+    /// With dashes
+    Dashed,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum LineName {
     X,
     Y,
@@ -131,6 +177,16 @@ fn levels(text: &str) -> Result<Levels, String> {
     if let Ok(count) = text.trim().parse() {
         return if count > 0 { Ok(Levels::Count(count)) } else { Err("at least 1 level".into()) };
     }
+    if text.trim() == values::ROUND_STEP {
+        return Ok(Levels::Round);
+    }
+    if let Some(step) = text.trim().strip_prefix("every:") {
+        let (step, offset) = step.split_once(':').unwrap_or((step, "0"));
+        return Ok(Levels::Every {
+            step: values::positive(step)?,
+            offset: values::number(offset)?,
+        });
+    }
     let list = text.strip_suffix(',').unwrap_or(text);
     list.split(',').map(values::number).collect::<Result<_, _>>().map(Levels::At)
 }
@@ -144,7 +200,8 @@ impl SurfaceArgs {
     /// without effect.
     pub(in crate::cli) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
         let Self { surface, camera, lines, hatch, light, axes, page, output } = self;
-        let texts: Vec<String> = surface.expression.into_iter().chain(surface.more).collect();
+        let texts = surface.expression.into_iter().chain(surface.more);
+        let texts: Vec<String> = texts.map(|text| text.trim().to_owned()).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
         let mut sheets = sheets.ok_or("give a formula")?;
         let default_line = match sheets.input {
@@ -163,6 +220,17 @@ impl SurfaceArgs {
         }
         if lines.levels.is_some() && !has(LineName::Levels) {
             return Err("--levels is for level curves: give --lines levels, too".into());
+        }
+        if !has(LineName::Levels)
+            && (lines.index_every.is_some()
+                || lines.labels.is_some()
+                || lines.negative == Negative::Dashed)
+        {
+            return Err(
+                "--index-every, --labels and --negative are for level curves: give --lines levels, \
+                 too"
+                    .into(),
+            );
         }
         let one_sheet = match &sheets.input {
             SurfaceSource::Formulas { formulas, .. } => formulas.len() == 1,
@@ -217,6 +285,19 @@ impl SurfaceArgs {
             along_y,
             every: lines.every,
             levels: has(LineName::Levels).then_some(levels),
+            index_every: lines.index_every,
+            negative_dashed: lines.negative == Negative::Dashed,
+            labels: lines.labels.map(|labels| match labels {
+                LabelName::Index => Labels::Index,
+                LabelName::All => Labels::All,
+                LabelName::None => Labels::None,
+            }),
+            label_side: match lines.label_side {
+                LabelSideName::Upright => LabelSide::Upright,
+                LabelSideName::Uphill => LabelSide::Uphill,
+            },
+            // Thick pens close the loops of small digits.
+            label_height_mm: DEFAULT_LABEL_HEIGHT_MM.max(6.0 * page.pen_width_mm()),
             silhouette: has(LineName::Silhouette),
             border: has(LineName::Border),
             intersections: has(LineName::Intersection),
@@ -228,7 +309,7 @@ impl SurfaceArgs {
             order: lines.order,
             axes,
             keep_scene: hatch.is_some(),
-            apart_by_kind: output.format == Format::Json,
+            apart_by_kind: output.format == Format::Json || output.plotting.has_pens_by_kind(),
             ..SurfaceLines::default()
         };
         Ok(Job {

@@ -64,7 +64,13 @@ impl Job {
         let view = self.view.framing()?;
         let drawn = turning.lines(&view, &self.lines, &self.page);
         let (lines, camera, sheet) = drawn.map_err(|error| failed(self, &error))?;
-        Ok(Turned { lines, camera, page: self.page, sheet, plot: plot_options(self) })
+        Ok(Turned {
+            lines,
+            camera,
+            page: self.page,
+            sheet,
+            plot: plot_options(self, turning.has_index_levels()),
+        })
     }
 }
 

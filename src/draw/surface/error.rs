@@ -12,6 +12,9 @@ use crate::surface::SamplingError;
 /// Most triangles that an engine for meshes is given: about 3 GB of memory.
 pub const MAX_TRIANGLES: u64 = 8_000_000;
 
+/// Most level curves of a drawing.
+pub(super) const MAX_LEVELS: usize = 65_535;
+
 /// Why a surface cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -40,6 +43,9 @@ pub enum SurfaceError {
          {MAX_TRIANGLES}"
     )]
     TooManyTriangles(u64),
+    /// More level curves than can be told apart.
+    #[error("{0:.0} level curves are more than {MAX_LEVELS}")]
+    TooManyLevels(f64),
     /// Level curves alone are to be drawn, and there are none.
     #[error(transparent)]
     NoLevels(#[from] NoLevels),
@@ -103,6 +109,9 @@ pub enum SurfaceNote {
     /// There are no level curves; other lines are drawn.
     #[error(transparent)]
     NoLevels(NoLevels),
+    /// Level curves of some length without a label.
+    #[error("no room for a label on {} of the level curves: {}", .0.len(), .0.join(", "))]
+    Unlabelled(Vec<String>),
     /// Letters of titles that the font does not have.
     #[error("the font has no {}: drawn as question marks", list(.0))]
     MissingLetters(Vec<char>),

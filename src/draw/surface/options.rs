@@ -19,6 +19,19 @@ pub struct SurfaceLines {
     pub every: usize,
     /// Level curves.
     pub levels: Option<Levels>,
+    /// Every n-th level curve is an index line, of kind index and by default twice as wide. `None` stands
+    /// for every fifth if the levels have a step, and for none otherwise.
+    pub index_every: Option<u16>,
+    /// Dash the level curves of heights below 0.
+    pub negative_dashed: bool,
+    /// Which level curves have their heights written into gaps. `None` stands for the index lines, or all
+    /// curves where there are no index lines, in views from above without grid lines, and for none in other
+    /// drawings.
+    pub labels: Option<Labels>,
+    /// Which way up labels are.
+    pub label_side: LabelSide,
+    /// Height of the digits of labels, in millimeters; less where there is no room.
+    pub label_height_mm: f64,
     /// Edges where the surface folds away from the eye.
     pub silhouette: bool,
     /// The border.
@@ -58,6 +71,11 @@ impl Default for SurfaceLines {
             along_y: true,
             every: 1,
             levels: None,
+            index_every: None,
+            negative_dashed: false,
+            labels: None,
+            label_side: LabelSide::Upright,
+            label_height_mm: DEFAULT_LABEL_HEIGHT_MM,
             silhouette: false,
             border: false,
             intersections: false,
@@ -104,6 +122,24 @@ impl SurfaceLines {
     #[must_use]
     pub fn levels(self, levels: Levels) -> Self {
         Self { levels: Some(levels), ..self }
+    }
+
+    /// Every `n`-th level curve is an index line.
+    #[must_use]
+    pub fn index_every(self, n: u16) -> Self {
+        Self { index_every: Some(n), ..self }
+    }
+
+    /// Heights written into gaps of level curves.
+    #[must_use]
+    pub fn labels(self, labels: Labels) -> Self {
+        Self { labels: Some(labels), ..self }
+    }
+
+    /// Dashes in level curves below 0.
+    #[must_use]
+    pub fn negative_dashed(self) -> Self {
+        Self { negative_dashed: true, ..self }
     }
 
     /// Edges where the surface folds away from the eye.
@@ -167,6 +203,29 @@ impl SurfaceLines {
     }
 }
 
+/// Height of the digits of labels, in millimeters, unless set otherwise.
+pub const DEFAULT_LABEL_HEIGHT_MM: f64 = 2.0;
+
+/// Which level curves are labelled with their heights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Labels {
+    /// None of them.
+    None,
+    /// Index lines.
+    Index,
+    /// All of them.
+    All,
+}
+
+/// Which way up labels are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LabelSide {
+    /// To be read from below or from the right.
+    Upright,
+    /// With their tops uphill.
+    Uphill,
+}
+
 /// Which level curves are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Levels {
@@ -174,6 +233,15 @@ pub enum Levels {
     Count(u16),
     /// At these heights, before any scaling.
     At(Vec<f64>),
+    /// At all multiples of `step`, counted from `offset`.
+    Every {
+        /// Above 0.
+        step: f64,
+        /// Added to each multiple.
+        offset: f64,
+    },
+    /// At the multiples of a round step, about a dozen of them.
+    Round,
 }
 
 /// The engines for surfaces.

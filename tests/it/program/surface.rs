@@ -455,7 +455,7 @@ fn ink_mm(folder: &TempDir, arguments: &[&str]) -> f64 {
 #[test]
 fn the_zero_curve_of_a_saddle_is_a_cross() {
     let folder = with_file("");
-    let lines = ["--lines", "levels", "--levels", "0,", "--view", "top"];
+    let lines = ["--lines", "levels", "--levels", "0,", "--labels", "none", "--view", "top"];
     for samples in ["40", "41", "40x80", "7x41"] {
         let cross = [&["x*y"][..], &lines, &["--samples", samples]].concat();
         let found = ink_mm(&folder, &cross);
@@ -466,6 +466,7 @@ fn the_zero_curve_of_a_saddle_is_a_cross() {
     let ones = "0 1 1 1 1 1 0 0\n";
     let folder = with_file([zeros, ones, ones, ones, zeros].concat());
     let levels = ["--grid", "heights", "--lines", "levels", "--levels", "1,", "--view", "top"];
+    let levels = [&levels[..], &["--labels", "none"]].concat();
     let found = ink_mm(&folder, &levels);
     assert!((found - 12.0 * 277.0 / 7.0).abs() < 0.05, "{found}");
 }
@@ -499,4 +500,69 @@ fn height_files_tell_what_is_odd_about_them() {
     let (with, _) = drawn(&with_file(pit), &["--grid", "heights", "--nodata=-99", "--exact"]);
     let (without, _) = drawn(&with_file(pit), &["--grid", "heights", "--exact"]);
     assert!(with.len() < without.len());
+}
+
+#[test]
+fn formulas_may_begin_with_a_minus_wherever_they_stand() {
+    let folder = with_file("");
+    for arguments in [
+        &["x", "-x^2"][..],
+        &["-x", "-y", "--lines", "both"],
+        &["--samples", "9", "-x", "--x=-2:2", "-y^2"],
+        &["--exact", "x", "-o", "first.svg", "-sin(x)"],
+    ] {
+        let rest: &[&str] = if arguments.contains(&"-o") { &[] } else { &["-o", "out.svg"] };
+        let output = run(&folder, &[arguments, rest].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {stderr}");
+        assert!(stderr.contains(", -"), "both formulas are sheets: {stderr}");
+    }
+    let output = run(&folder, &["x", "-nope", "-o", "out.svg"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(stderr.contains("unknown name `nope`"), "{stderr}");
+}
+
+#[test]
+fn levels_have_a_round_step_or_one_that_is_given() {
+    let folder = with_file("");
+    for (levels, n) in
+        [(&["--levels"][..], 10), (&["--levels", "every:2.5"], 4), (&["--levels", "every:2:1"], 5)]
+    {
+        let (strokes, _) =
+            drawn(&folder, &[&["x", "--lines", "levels", "--labels", "none"], levels].concat());
+        let found = strokes
+            .iter()
+            .filter(|stroke| {
+                ["level", "index"].contains(&stroke["kind"].as_str().unwrap_or_default())
+            })
+            .count();
+        assert_eq!(found, n, "{levels:?}");
+    }
+}
+
+#[test]
+fn pens_are_chosen_by_sheet_and_kind_and_folds_have_only_the_pen_of_folds() {
+    let folder = with_file("");
+    let layers = |pens: &[&str]| -> Vec<String> {
+        let base = ["sin(x)*cos(y)", "x/4", "--x=-3:3", "--y=-3:3", "--samples", "21", "--lines"];
+        let base = [&base[..], &["both,levels,silhouette", "--levels", "5", "--no-axes"]].concat();
+        let pens = pens.iter().flat_map(|pen| ["--pen", pen]);
+        let arguments: Vec<&str> = base.into_iter().chain(pens).chain(["-o", "out.svg"]).collect();
+        let output = run(&folder, &arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let svg = std::fs::read_to_string(folder.path().join("out.svg")).expect("a drawing");
+        let label = |part: &str| part.split('"').next().unwrap_or_default().to_owned();
+        svg.split("inkscape:label=\"").skip(1).map(label).collect()
+    };
+    let found = layers(&["sheet2=2", "sheet1.level=3", "y=4", "silhouette=5", "visible=1"]);
+    for name in ["visible", "sheet2", "sheet1.level", "y", "silhouette"] {
+        assert!(found.iter().any(|label| label.contains(name)), "{name}: {found:?}");
+    }
+    let output = run(&folder, &["x", "--pen", "sheet2=2", "--pen", "level=3", "-o", "out.svg"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        stderr.contains("--pen sheet2=… draws nothing")
+            && stderr.contains("--pen level=… draws nothing"),
+        "{stderr}"
+    );
 }

@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3, dvec3};
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
 use hiddenline::stages::draw::surface::{
-    Levels, NoLevels, SurfaceEngine, SurfaceError, SurfaceLines, SurfaceNote, SurfaceOutput,
-    draw_surface,
+    Labels, Levels, NoLevels, SurfaceEngine, SurfaceError, SurfaceLines, SurfaceNote,
+    SurfaceOutput, draw_surface,
 };
 use hiddenline::stages::engines::surface::{CellOrder, HorizonError};
 use hiddenline::stages::model::mesh::MeshError;
@@ -95,8 +95,13 @@ fn lines_are_as_smooth_on_paper_as_asked_for() {
 #[test]
 fn level_curves_of_a_paraboloid_are_circles() {
     let surface = of("r^2").x(-3.0, 3.0).y(-3.0, 3.0).samples(241, 241);
-    let levels =
-        |levels| SurfaceLines { along_x: false, along_y: false, levels: Some(levels), ..bare() };
+    let levels = |levels| SurfaceLines {
+        along_x: false,
+        along_y: false,
+        levels: Some(levels),
+        labels: Some(Labels::None),
+        ..bare()
+    };
     let at = levels(Levels::At(vec![1.0, 4.0]));
     let found = length(&drawn(&surface, NamedView::Top, &at), StrokeKind::Level);
     let expected = TAU * (1.0 + 2.0);

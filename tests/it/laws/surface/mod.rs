@@ -5,6 +5,7 @@ mod damage;
 mod drawing;
 mod floating_horizon;
 mod height_files;
+mod labels;
 mod level_lengths;
 mod margins;
 mod max_min;
