@@ -158,8 +158,14 @@ pub fn draw_surface(
     let (around, extent, page) =
         surround(&axes_box(&surface), extent, &camera, lines.axes.as_ref(), page)?;
     notes.extend(around.notes.iter().cloned());
+    let mut visible_wires = None;
     let (mut drawn, size) = match (grid, &lined) {
-        (Some(grid), _) => draw_grid(grid, surface.places(), &camera, lines)?,
+        (Some(grid), _) => {
+            let wires = around.layout.wires();
+            let drawn = draw_grid(grid, surface.places(), &camera, lines, wires)?;
+            visible_wires = drawn.wires;
+            (drawn.drawn, drawn.size)
+        }
         (None, Some(lined)) => {
             let scale = page.mm_per_image_unit();
             let drawn = meshed::draw(lined, &camera, &meshed_options(lines), scale);
@@ -190,15 +196,18 @@ pub fn draw_surface(
     }
     let scene = match lined {
         Some(lined) => Some(lined.scene),
-        None if lines.keep_scene || !around.layout.wires().is_empty() => {
+        None if lines.keep_scene
+            || visible_wires.is_none() && !around.layout.wires().is_empty() =>
+        {
             Some(self::lined(&surface, lines, &levels)?.scene)
         }
         None => None,
     };
     if !drawing.is_empty() {
-        drawing.append(&match &scene {
-            Some(scene) => around.with_wires(scene, &camera),
-            None => around.strokes,
+        drawing.append(&match (visible_wires, &scene) {
+            (Some(parts), _) => around.with_visible(&parts, &camera),
+            (None, Some(scene)) => around.with_wires(scene, &camera),
+            (None, None) => around.strokes,
         });
     }
     let has_index_levels = levels.has_index();

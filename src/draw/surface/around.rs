@@ -148,7 +148,7 @@ pub fn axes_box(surface: &SampledSurface) -> AxesBox {
 
 impl Around {
     /// The axes, with those parts of the lines behind the surface that `scene` does not hide.
-    pub fn with_wires(mut self, scene: &Scene, camera: &Camera) -> Strokes {
+    pub fn with_wires(self, scene: &Scene, camera: &Camera) -> Strokes {
         let wires = self.layout.wires();
         let mut segments = ViewSegments::new(scene);
         for wire in wires {
@@ -159,11 +159,21 @@ impl Around {
         let view = ViewedScene::with_segments(scene, camera, none, 180.0, &segments);
         let (visibility, _) = roberts::solve(&view, &VisibilityOptions::EXACT);
         let first = scene.n_lines() as u32;
+        let mut parts = vec![Vec::new(); wires.len()];
         for (number, drawn) in view.selected().iter().enumerate() {
-            let wire = &wires[(drawn.edge - first) as usize];
+            let visible = visibility.spans(number).iter().filter(|span| span.qi == 0);
+            parts[(drawn.edge - first) as usize] = visible.map(|span| [span.t0, span.t1]).collect();
+        }
+        self.with_visible(&parts, camera)
+    }
+
+    /// The axes, with the visible parts of each line behind the surface, from 0 at its first end to 1 at
+    /// the other.
+    pub(super) fn with_visible(mut self, parts: &[Vec<[f64; 2]>], camera: &Camera) -> Strokes {
+        for (wire, parts) in self.layout.wires().iter().zip(parts) {
             let at = |t: f64| camera.image(DVec3::lerp(wire.ends[0], wire.ends[1], t));
-            for span in visibility.spans(number).iter().filter(|span| span.qi == 0) {
-                self.strokes.push(wire.kind, 0, [at(span.t0), at(span.t1)]);
+            for part in parts {
+                self.strokes.push(wire.kind, 0, part.map(at));
             }
         }
         self.strokes

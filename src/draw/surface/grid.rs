@@ -1,7 +1,10 @@
 //! Surfaces that are one grid: when they are drawn as such, and how.
 
+use glam::DVec3;
+
 use super::error::SurfaceError;
 use super::options::{SurfaceEngine, SurfaceLines};
+use crate::axes::Wire;
 use crate::camera::Camera;
 use crate::chain::grid_lines::{GridLines, strokes};
 use crate::drafting::Drafted;
@@ -45,6 +48,15 @@ pub(super) fn grid_to_draw<'a>(
     }
 }
 
+/// What an engine for grids draws.
+pub(super) struct DrawnGrid {
+    pub(super) drawn: DrawOutput,
+    pub(super) size: MeshSize,
+    /// The visible parts of each wire, from 0 at its first end to 1 at the other, if the engine finds
+    /// them.
+    pub(super) wires: Option<Vec<Vec<[f64; 2]>>>,
+}
+
 /// Draws grid lines of `grid`; `places` says which of its lines count, if not all do.
 ///
 /// # Errors
@@ -54,17 +66,24 @@ pub(super) fn draw_grid(
     places: Option<&Places>,
     camera: &Camera,
     options: &SurfaceLines,
-) -> Result<(DrawOutput, MeshSize), SurfaceError> {
+    wires: &[Wire],
+) -> Result<DrawnGrid, SurfaceError> {
     let mut seconds = Seconds::default();
-    let (engine, pieces) = timed(&mut seconds.visibility, || -> Result<_, SurfaceError> {
-        Ok(match options.engine {
-            SurfaceEngine::FloatingHorizon => {
-                let family = if options.along_x { Family::AlongX } else { Family::AlongY };
-                ("floating-horizon", floating_horizon::solve(grid, camera, family)?)
-            }
-            _ => (max_min::NAME, max_min::solve(grid, camera, options.order.unwrap_or_default())?),
-        })
-    })?;
+    let wires: Vec<[DVec3; 2]> = wires.iter().map(|wire| wire.ends).collect();
+    let (engine, (pieces, parts)) =
+        timed(&mut seconds.visibility, || -> Result<_, SurfaceError> {
+            Ok(match options.engine {
+                SurfaceEngine::FloatingHorizon => {
+                    let family = if options.along_x { Family::AlongX } else { Family::AlongY };
+                    ("floating-horizon", (floating_horizon::solve(grid, camera, family)?, None))
+                }
+                _ => {
+                    let order = options.order.unwrap_or_default();
+                    let (pieces, parts) = max_min::solve_with_wires(grid, camera, order, &wires)?;
+                    (max_min::NAME, (pieces, Some(parts)))
+                }
+            })
+        })?;
     let drawing = timed(&mut seconds.strokes, || {
         let SurfaceLines { along_x, along_y, every, exact: separate, .. } = *options;
         let lines = GridLines { along_x, along_y, every, places, side: None, separate };
@@ -93,5 +112,5 @@ pub(super) fn draw_grid(
         drafted: Drafted::default(),
         seconds,
     };
-    Ok((drawn, size))
+    Ok(DrawnGrid { drawn, size, wires: parts })
 }

@@ -47,6 +47,7 @@ impl std::ops::AddAssign for HorizonCounts {
 }
 
 /// One horizon over a strip of u; see the [module](self).
+#[derive(Clone)]
 pub(super) struct Horizon {
     /// Pieces to the left of the finger, the nearest last.
     left: Vec<HorizonPiece>,

@@ -51,9 +51,13 @@ use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
 use super::plan_predicates::{PlanSight, over_plane};
 use super::segment::HorizonPlane;
 use super::strip::HorizonStrip;
+use super::wires::{joined, visible_in_strip};
 use super::{CellOrder, HorizonError};
 use crate::camera::{Camera, Projection};
 use crate::surface::{Grid, Holes};
+
+/// The visible parts of each wire, from 0 at its first end to 1 at the other.
+pub type WireParts = Vec<Vec<[f64; 2]>>;
 
 /// What this engine is called.
 pub const NAME: &str = "max-min";
@@ -103,6 +107,20 @@ pub fn solve(grid: &Grid, camera: &Camera, order: CellOrder) -> Result<GridPiece
     solve_in_strips(grid, camera, order, CELLS_PER_STRIP)
 }
 
+/// As [`solve`], with the visible parts of wires: lines on the back of a box around the surface, or on its
+/// base. Each part goes from 0 at a wire's first end to 1 at the other.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_with_wires(
+    grid: &Grid,
+    camera: &Camera,
+    order: CellOrder,
+    wires: &[[DVec3; 2]],
+) -> Result<(GridPieces, WireParts), HorizonError> {
+    sweep(grid, camera, order, CELLS_PER_STRIP, wires)
+}
+
 /// As [`solve`], with strips of about `cells_per_strip` cells; the drawing is the same up to the
 /// rounding of where pieces end.
 ///
@@ -114,6 +132,16 @@ pub fn solve_in_strips(
     order: CellOrder,
     cells_per_strip: usize,
 ) -> Result<GridPieces, HorizonError> {
+    sweep(grid, camera, order, cells_per_strip, &[]).map(|(pieces, _)| pieces)
+}
+
+fn sweep(
+    grid: &Grid,
+    camera: &Camera,
+    order: CellOrder,
+    cells_per_strip: usize,
+    wires: &[[DVec3; 2]],
+) -> Result<(GridPieces, WireParts), HorizonError> {
     if grid.holes() != Holes::None {
         return Err(HorizonError::Holes);
     }
@@ -123,7 +151,8 @@ pub fn solve_in_strips(
     let perspective = matches!(camera.projection(), Projection::Perspective { .. });
     if !perspective && forward.x == 0.0 && forward.y == 0.0 {
         let seen = if forward.z < 0.0 { UPPER } else { LOWER };
-        return Ok(GridPieces::join(nx, ny, vec![seen; n_edges], Vec::new()));
+        let pieces = GridPieces::join(nx, ny, vec![seen; n_edges], Vec::new());
+        return Ok((pieces, vec![Vec::new(); wires.len()]));
     }
     let horizons = if perspective { horizons_at_foot(grid, camera.eye())? } else { (true, true) };
     let status: Vec<AtomicU8> = (0..n_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
@@ -132,6 +161,8 @@ pub fn solve_in_strips(
     // In orthographic projection only differences matter; a center in the middle keeps them small.
     let center = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
     let size = (high - center).abs().max((low - center).abs());
+    let ends = wires.iter().flatten();
+    let size_with_wires = ends.fold(size, |size, end| size.max((*end - center).abs()));
     let parts = parts(grid, camera);
     let tasks: Vec<(&GridPart, PlanSight, (f64, f64))> = parts
         .iter()
@@ -150,10 +181,15 @@ pub fn solve_in_strips(
             let plane = HorizonPlane::new(grid, sight, size);
             let mut strip = HorizonStrip::new(plane, range, horizons, &status);
             part.sweep(grid, &mut strip, order);
-            (strip.work(), strip.found)
+            let (work, found) = (strip.work(), std::mem::take(&mut strip.found));
+            let horizons = strip.into_horizons();
+            let parts = visible_in_strip((grid, wires), sight, size_with_wires, range, &horizons);
+            ((work, found), parts)
         })
         .collect();
-    Ok(GridPieces::of_strips(nx, ny, status, done))
+    let (done, parts): (Vec<_>, Vec<_>) = done.into_iter().unzip();
+    let parts = joined(wires.len(), parts.concat());
+    Ok((GridPieces::of_strips(nx, ny, status, done), parts))
 }
 
 pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {

@@ -16,6 +16,7 @@ mod segment;
 mod steps;
 mod strip;
 pub mod tin;
+mod wires;
 
 pub use horizon::HorizonCounts;
 pub use pieces::{GridPieces, SurfaceSide, VisiblePiece};

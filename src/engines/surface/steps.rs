@@ -15,6 +15,7 @@
 const STEPS: usize = 128;
 
 /// Heights count outwards: upwards for an upper horizon, downwards for a lower one.
+#[derive(Clone)]
 pub(super) struct Steps {
     start: f64,
     per_u: f64,

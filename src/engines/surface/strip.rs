@@ -56,6 +56,28 @@ impl<'a, S: Samples> HorizonStrip<'a, S> {
         }
     }
 
+    /// A strip with horizons that are known.
+    pub(super) fn with_horizons(
+        plane: HorizonPlane<'a, S>,
+        range: (f64, f64),
+        horizons: [Option<Horizon>; 2],
+        status: &'a [AtomicU8],
+    ) -> Self {
+        let mut strip = Self::new(plane, range, (false, false), status);
+        strip.set_horizons(horizons);
+        strip
+    }
+
+    /// Replaces the upper and the lower horizon.
+    pub(super) fn set_horizons(&mut self, horizons: [Option<Horizon>; 2]) {
+        [self.upper, self.lower] = horizons;
+    }
+
+    /// The upper and the lower horizon.
+    pub(super) fn into_horizons(self) -> [Option<Horizon>; 2] {
+        [self.upper, self.lower]
+    }
+
     pub(super) fn work(&self) -> HorizonCounts {
         let mut work = HorizonCounts::default();
         for horizon in [&self.upper, &self.lower].into_iter().flatten() {
@@ -252,6 +274,38 @@ impl<'a, S: Samples> HorizonStrip<'a, S> {
         let error = plane.v_error(from.v) + plane.v_error(to.v);
         let rounded = filtered(to.v - from.v, error);
         Some(rounded.unwrap_or_else(|| plane.sight.rise(plane.point(near), plane.point(far))))
+    }
+
+    /// The parts of a segment that are beyond a horizon, as ranges of 0..1 from `a` to `b`. The segment
+    /// is behind the surface, and all of it is at the same u.
+    pub(super) fn beyond_at(&mut self, a: u32, b: u32) -> Vec<[f64; 2]> {
+        let depth = |id: u32| self.plane.sight.rounded(self.plane.point(id))[1];
+        let is_behind = |id: u32| {
+            let (p, sight) = (self.plane.point(id), &self.plane.sight);
+            let [x, y] = [(p.x - sight.center.x) * sight.sx, (p.y - sight.center.y) * sight.sy];
+            sight.forward.is_none() && (x < 0.0 || y < 0.0)
+        };
+        let (near, far) = if depth(a) <= depth(b) { (a, b) } else { (b, a) };
+        if is_behind(far) {
+            return Vec::new();
+        }
+        let at = self.plane.vertex(far);
+        let from = self.plane.order_to_border(at, self.from);
+        let to = self.plane.order_to_border(at, self.to);
+        let mut parts = Vec::new();
+        for right_side in [false, true] {
+            let inside = if right_side {
+                from != Ordering::Less && to == Ordering::Less
+            } else {
+                from == Ordering::Greater && to != Ordering::Greater
+            };
+            for horizon in [&mut self.upper, &mut self.lower].into_iter().flatten() {
+                let beyond = horizon.radial(&self.plane, near, far, right_side);
+                let Some((from, to)) = beyond.filter(|_| inside) else { continue };
+                parts.push(if near == a { [from, to] } else { [1.0 - to, 1.0 - from] });
+            }
+        }
+        parts
     }
 
     /// Records what is visible of a radial edge, whose ends are at the same u, as seen from the cell

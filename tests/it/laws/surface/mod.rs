@@ -14,3 +14,4 @@ mod pen_path;
 mod points;
 mod scales;
 mod tin;
+mod walls;
