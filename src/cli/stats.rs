@@ -59,6 +59,8 @@ pub(super) struct Certified {
     cells: usize,
     /// Those of them that are not certified.
     uncertified_cells: usize,
+    /// Places of drawn lines at which the surface is torn open.
+    tears: usize,
     /// How often formulas were enclosed.
     jets: usize,
 }
@@ -71,6 +73,7 @@ impl From<Certificate> for Certified {
             uncertified_lines: certificate.uncertified_chords,
             cells: certificate.cells,
             uncertified_cells: certificate.uncertified_cells,
+            tears: certificate.tears,
             jets: certificate.jets,
         }
     }

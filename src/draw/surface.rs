@@ -46,7 +46,7 @@ use crate::extent::Extent;
 use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions};
 use crate::strokes::Strokes;
-use crate::surface::{LatticeLines, LinedScene, SampledSurface, Surface};
+use crate::surface::{AxisScale, LatticeLines, LinedScene, SampledSurface, Surface};
 use crate::timing::{Seconds, timed};
 
 /// More of the paper covered with lines than this looks like a sheet of ink.
@@ -124,11 +124,16 @@ pub fn draw_surface(
     page: &PageOptions,
 ) -> Result<SurfaceOutput, SurfaceError> {
     let mut seconds = Seconds::default();
-    let SmoothSurface { surface, camera, certificate } =
+    let SmoothSurface { surface, camera, certificate, heights } =
         timed(&mut seconds.read, || sample(surface, view, lines, page))?;
     let mut notes = Vec::new();
     if let Some(certificate) = certificate.filter(|certificate| !certificate.holds()) {
         notes.push(SurfaceNote::Uncertified(certificate));
+    }
+    if let Some((low, high)) = heights {
+        let scale = AxisScale { factor: 1.0, ..surface.scales()[2] };
+        let [low, high] = [low, high].map(|height| brief(scale.value(height)));
+        notes.push(SurfaceNote::Poles { low, high });
     }
     if surface.n_rim_points_joined() > 0 {
         notes.push(SurfaceNote::RimsJoined(surface.n_rim_points_joined()));

@@ -17,20 +17,40 @@ use super::grid::{Grid, GridError, check_ranges, check_size, evenly};
 use super::height_function::HeightFunction;
 use super::lined_mesh::{LatticeLines, LinedMesh};
 use super::places::Places;
+use super::tears::{STILL, TornFunction, ends_of};
 use crate::strokes::{GridFamily, StrokeKind};
-use crate::surface::formula::Formula;
+use crate::surface::formula::{Formula, JetGraph};
 
 /// How often the edge on which the rim lies is halved: then it is known to the last bit of an edge
 /// that does not begin at the origin.
 const HALVINGS: u32 = 60;
+
+/// Heights that grow by this on the last millionth of an edge grow without end: a logarithm grows by a
+/// third there, and the first power of 1/x by 64 times.
+const GROWTH: f64 = 1.1;
+
+/// Heights that differ by less than this part of the range of heights are the same.
+const SAME_HEIGHT: f64 = 1e-6;
 
 /// A grid over a domain with a smooth rim: the border of the domain is found by bisection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrimmedGrid {
     /// Samples outside of the domain are holes.
     grid: Grid,
-    /// Where edges leave the domain, by the numbers of their samples, the one inside first.
+    /// Where edges leave the domain, by the numbers of their samples, the one inside first. An edge that
+    /// is torn between two samples inside is left from both of them.
     rim: FxHashMap<[u32; 2], DVec3>,
+    has_poles: bool,
+}
+
+/// What a grid is cut off by, besides its formula.
+pub(super) struct Cutting<'a> {
+    /// Where the surface is.
+    pub(super) domain: Option<&'a HeightFunction>,
+    /// The heights that it has.
+    pub(super) heights: Option<(f64, f64)>,
+    /// Heights that are closer than this meet where the formula has a gap.
+    pub(super) closes: f64,
 }
 
 impl TrimmedGrid {
@@ -87,7 +107,67 @@ impl TrimmedGrid {
             .flat_map_iter(|j| leaving_edges(&grid, j))
             .map(|edge| (edge, last_inside(&grid, function, domain, edge)))
             .collect();
-        Ok(Self { grid, rim })
+        Ok(Self { grid, rim, has_poles: false })
+    }
+
+    /// Samples `function` on given lines where it has a value, torn open where it jumps.
+    ///
+    /// # Errors
+    /// As [`Grid::sample_at`].
+    pub(super) fn sample_torn(
+        function: &HeightFunction,
+        jets: JetGraph,
+        cutting: &Cutting,
+        xs: Vec<f64>,
+        ys: Vec<f64>,
+    ) -> Result<Self, GridError> {
+        let &Cutting { domain, heights, closes } = cutting;
+        let whole = Grid::sample_at(function, xs, ys)?;
+        let torn = TornFunction::new(function, jets, closes);
+        let (xs, ys) = (whole.xs().to_vec(), whole.ys().to_vec());
+        let nx = xs.len();
+        let zs = (0..whole.zs().len()).into_par_iter().map(|k| {
+            let z = whole.zs()[k];
+            let z = if z.is_nan() { torn.filled(&whole, k).unwrap_or(z) } else { z };
+            let is_in = heights.is_none_or(|(low, high)| (low..=high).contains(&z))
+                && domain.is_none_or(|domain| is_true(domain.height(xs[k % nx], ys[k / nx])));
+            if is_in { z } else { f64::NAN }
+        });
+        let zs: Vec<f64> = zs.collect();
+        let grid = Grid::new(xs.clone(), ys, zs)?;
+        let last = |from: DVec3, to: DVec3| last_before(function, domain, heights, from, to);
+        let mut rim: FxHashMap<[u32; 2], DVec3> = (0..grid.ys().len() as u32)
+            .into_par_iter()
+            .flat_map_iter(|j| leaving_edges(&grid, j))
+            .map(|edge @ [a, b]| (edge, last(grid.point(a), grid.point(b))))
+            .collect();
+        let tears: Vec<_> = torn
+            .tears(&grid)
+            .into_par_iter()
+            .map(|tear| (tear.edge, ends_of(&grid, &tear, last)))
+            .collect();
+        for ([a, b], [from_a, from_b]) in tears {
+            rim.insert([a, b], from_a);
+            rim.insert([b, a], from_b);
+        }
+        let is_pole = |(edge, end): (&[u32; 2], &DVec3)| {
+            let [a, b] = edge.map(|k| grid.point(k).truncate());
+            let before = end.truncate() - STILL * (b - a);
+            let z = function.height(before.x, before.y);
+            end.z.abs() > GROWTH * z.abs() && (end.z - z).abs() > closes
+        };
+        let has_poles = heights.is_none() && rim.par_iter().any(is_pole);
+        Ok(Self { grid, rim, has_poles })
+    }
+
+    /// Whether heights seem to grow without end somewhere along the rim.
+    pub(super) fn has_poles(&self) -> bool {
+        self.has_poles
+    }
+
+    /// Whether the edge between two samples is torn: whether there is nothing somewhere between them.
+    pub(super) fn is_torn(&self, a: u32, b: u32) -> bool {
+        self.rim.contains_key(&[a, b]) && self.rim.contains_key(&[b, a])
     }
 
     /// Whether no edge leaves the domain: all is inside, or all is outside.
@@ -201,6 +281,46 @@ fn last_inside(
     last
 }
 
+/// The last point on the way from one place with a height to another that is known to be inside, where
+/// the surface may end at a lowest or highest height.
+fn last_before(
+    function: &HeightFunction,
+    domain: Option<&HeightFunction>,
+    heights: Option<(f64, f64)>,
+    from: DVec3,
+    to: DVec3,
+) -> DVec3 {
+    let height = |t: f64| {
+        let p = from + t * (to - from).with_z(0.0);
+        let holds = domain.is_none_or(|domain| is_true(domain.height(p.x, p.y)));
+        (p, if holds { function.height(p.x, p.y) + 0.0 } else { f64::NAN })
+    };
+    let is_in =
+        |z: f64| z.is_finite() && heights.is_none_or(|(low, high)| (low..=high).contains(&z));
+    let (end, z) = height(1.0);
+    if is_in(z) {
+        return end.with_z(z);
+    }
+    let (mut last, mut beyond, mut low, mut high) = (from, z, 0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let (p, z) = height(middle);
+        if is_in(z) {
+            (low, last) = (middle, p.with_z(z));
+        } else {
+            (high, beyond) = (middle, z);
+        }
+    }
+    // Where the surface runs through its highest or lowest height it ends at that very height.
+    let ends_at = heights.and_then(|(low, high)| {
+        let is_near = |end: f64| (end - last.z).abs() <= SAME_HEIGHT * (high - low);
+        [(high, beyond > high), (low, beyond < low)]
+            .into_iter()
+            .find_map(|(end, is_passed)| (is_passed && is_near(end)).then_some(end))
+    });
+    last.with_z(ends_at.unwrap_or(last.z))
+}
+
 impl LinedMesh {
     /// Adds the part of a surface inside its domain, with grid lines up to the rim, and the rim as
     /// lines of kind boundary if any grid lines are drawn. O(samples).
@@ -215,9 +335,9 @@ impl LinedMesh {
         lines: &LatticeLines,
         places: Option<&Places>,
     ) {
-        let TrimmedGrid { grid, rim } = trimmed;
+        let TrimmedGrid { grid, rim, .. } = trimmed;
         let base = self.positions.len() as u32;
-        self.push_grid_at(grid, lines, places);
+        self.push_grid_at(grid, lines, places, &|a, b| trimmed.is_torn(a as u32, b as u32));
         let [columns, rows] = lines.drawn((grid.xs().len(), grid.ys().len()), places);
         let nx = grid.xs().len() as u32;
         let inside = |k: u32| !grid.zs()[k as usize].is_nan();
@@ -247,41 +367,73 @@ impl LinedMesh {
             for i in 0..nx - 1 {
                 let k = j * nx + i;
                 for corners in [[k, k + 1, k + nx + 1], [k, k + nx + 1, k + nx]] {
-                    let is_cut = corners.iter().any(|&k| inside(k));
-                    if is_cut && !corners.iter().all(|&k| inside(k)) {
-                        let mut polygon = Vec::with_capacity(4);
-                        let mut cut = Vec::with_capacity(2);
-                        for (a, b) in
-                            [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a], corners[b]))
-                        {
-                            if inside(a) {
-                                polygon.push(base + a);
-                            }
-                            if inside(a) != inside(b) {
-                                let edge = if inside(a) { [a, b] } else { [b, a] };
-                                if let Some(&number) = numbers.get(&edge) {
-                                    polygon.push(number);
-                                    cut.push(number);
-                                }
-                            }
+                    let sides = [0, 1, 2].map(|side| [corners[side], corners[(side + 1) % 3]]);
+                    let is_whole =
+                        |[a, b]: [u32; 2]| inside(a) && inside(b) && !trimmed.is_torn(a, b);
+                    let n_whole = sides.into_iter().filter(|side| is_whole(*side)).count();
+                    if n_whole == 3 || !corners.iter().any(|&k| inside(k)) {
+                        continue;
+                    }
+                    for run in runs(sides, n_whole, base, &inside, &numbers) {
+                        let Some((&first, rest)) = run.split_first() else { continue };
+                        for pair in rest.windows(2) {
+                            self.push_triangle([first, pair[0], pair[1]], lines.triangles);
                         }
-                        polygon.dedup();
-                        if polygon.first() == polygon.last() {
-                            polygon.pop();
-                        }
-                        if let Some((&first, rest)) = polygon.split_first() {
-                            for pair in rest.windows(2) {
-                                self.push_triangle([first, pair[0], pair[1]], lines.triangles);
-                            }
-                        }
-                        if let (true, &[a, b]) = (draws_rim && polygon.len() > 2, &cut[..])
-                            && a != b
-                        {
-                            self.push_line([a, b], StrokeKind::Boundary, None);
+                        if draws_rim && run.len() > 2 && n_whole < 2 {
+                            self.push_line([run[run.len() - 1], first], StrokeKind::Boundary, None);
                         }
                     }
                 }
             }
         }
     }
+}
+
+/// What is left of a triangle that the rim cuts: polygons that run along its border from one point of the
+/// rim to the next. A tear that only one side of it shows ends at the corner across.
+fn runs(
+    mut sides: [[u32; 2]; 3],
+    n_whole: usize,
+    base: u32,
+    inside: &impl Fn(u32) -> bool,
+    numbers: &FxHashMap<[u32; 2], u32>,
+) -> Vec<Vec<u32>> {
+    let cut = |[a, b]: [u32; 2]| (numbers.get(&[a, b]), numbers.get(&[b, a]));
+    let is_torn = |side: [u32; 2]| matches!(cut(side), (Some(_), Some(_)));
+    // Begin right after a side that is cut or lies outside.
+    let is_whole = |[a, b]: [u32; 2]| inside(a) && inside(b) && !is_torn([a, b]);
+    while is_whole(sides[2]) && n_whole < 3 {
+        sides.rotate_right(1);
+    }
+    let [.., last] = sides;
+    if n_whole == 2
+        && let (Some(&near), Some(&far)) = cut(last)
+    {
+        let [a, b] = last.map(|k| base + k);
+        let across = base + sides[0][1];
+        return vec![without_repeats(vec![across, a, near]), without_repeats(vec![across, far, b])];
+    }
+    let mut runs = Vec::new();
+    let mut run: Vec<u32> = cut(last).1.copied().into_iter().collect();
+    for side @ [a, _] in sides {
+        if inside(a) {
+            run.push(base + a);
+        }
+        if is_whole(side) {
+            continue;
+        }
+        let (end, start) = cut(side);
+        run.extend(end.copied());
+        runs.push(without_repeats(std::mem::take(&mut run)));
+        run.extend(start.copied());
+    }
+    runs
+}
+
+fn without_repeats(mut polygon: Vec<u32>) -> Vec<u32> {
+    polygon.dedup();
+    while polygon.len() > 1 && polygon.first() == polygon.last() {
+        polygon.pop();
+    }
+    polygon
 }

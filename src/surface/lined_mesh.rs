@@ -98,33 +98,37 @@ impl LinedMesh {
 
     /// Adds the triangles and lines of a grid; the cells around a hole are left out.
     pub fn push_grid(&mut self, grid: &Grid, lines: &LatticeLines) {
-        self.push_grid_at(grid, lines, None);
+        self.push_grid_at(grid, lines, None, &|_, _| false);
     }
 
-    /// As [`push_grid`](Self::push_grid), on lines that are not all the surface's own.
+    /// As [`push_grid`](Self::push_grid), on lines that are not all the surface's own; edges that are torn
+    /// and what is beside them are left out.
     pub(super) fn push_grid_at(
         &mut self,
         grid: &Grid,
         lines: &LatticeLines,
         places: Option<&Places>,
+        is_torn: &dyn Fn(usize, usize) -> bool,
     ) {
         let points: Vec<DVec3> = (0..grid.zs().len() as u32).map(|k| grid.point(k)).collect();
-        self.push_lattice_at(grid.xs().len(), &points, lines, places);
+        self.push_lattice_at(grid.xs().len(), &points, lines, places, is_torn);
     }
 
     /// Adds a lattice of points in space, given row by row with `n_columns` in each; a point that
     /// is not finite is a hole. Cells are cut along (i,j)–(i+1,j+1). O(points).
     pub fn push_lattice(&mut self, n_columns: usize, points: &[DVec3], lines: &LatticeLines) {
-        self.push_lattice_at(n_columns, points, lines, None);
+        self.push_lattice_at(n_columns, points, lines, None, &|_, _| false);
     }
 
-    /// As [`push_lattice`](Self::push_lattice), on lines that are not all the surface's own.
+    /// As [`push_lattice`](Self::push_lattice), on lines that are not all the surface's own; edges that are
+    /// torn and what is beside them are left out.
     pub(super) fn push_lattice_at(
         &mut self,
         n_columns: usize,
         points: &[DVec3],
         lines: &LatticeLines,
         places: Option<&Places>,
+        is_torn: &dyn Fn(usize, usize) -> bool,
     ) {
         // All edges of all triangles are to be those of the surface as it is drawn without levels.
         let levels = if lines.triangles { Vec::new() } else { self.split_at.clone() };
@@ -163,7 +167,10 @@ impl LinedMesh {
                         points_of_ring.push(self.positions[vertex as usize]);
                     }
                 }
-                match splitting.center(corners.map(|k| points[k]), &points_of_ring) {
+                let is_torn_cell = is_torn(k, above + 1)
+                    || (0..4).any(|side| is_torn(corners[side], corners[(side + 1) % 4]));
+                let center = splitting.center(corners.map(|k| points[k]), &points_of_ring);
+                match center.filter(|_| !is_torn_cell) {
                     Some(Center::Inside(center)) => {
                         self.positions.push(center);
                         let center = (self.positions.len() - 1) as u32;
@@ -182,7 +189,9 @@ impl LinedMesh {
                     None => {}
                 }
                 for corners in [[k, right, above + 1], [k, above + 1, above]] {
-                    if !corners.into_iter().any(is_hole) {
+                    let is_cut = is_torn_cell
+                        && (0..3).any(|side| is_torn(corners[side], corners[(side + 1) % 3]));
+                    if !corners.into_iter().any(is_hole) && !is_cut {
                         self.push_triangle(corners.map(id), lines.triangles);
                     }
                 }
@@ -191,7 +200,7 @@ impl LinedMesh {
         let [columns, rows] = lines.drawn((n_columns, n_rows), places);
         let sheet = self.sheet();
         let mut push = |a: usize, b: usize, family: GridFamily| {
-            if is_hole(a) || is_hole(b) {
+            if is_hole(a) || is_hole(b) || is_torn(a, b) {
                 return;
             }
             let part = SurfacePart { sheet, family: Some(family), ..SurfacePart::default() };

@@ -20,6 +20,7 @@ mod sampled;
 mod sampling_error;
 mod source;
 mod split_cells;
+mod tears;
 
 pub use axis_scale::AxisScale;
 pub use domain::TrimmedGrid;

@@ -5,7 +5,7 @@ use std::fmt;
 use glam::DVec3;
 
 use super::axis_scale::AxisScale;
-use super::domain::TrimmedGrid;
+use super::domain::{Cutting, TrimmedGrid};
 use super::formula::{Axis, Formula, JetGraph};
 use super::grid::{Grid, Holes, check_parameters, check_ranges, check_size};
 use super::height_function::HeightFunction;
@@ -74,12 +74,18 @@ pub struct Lattice<'a> {
     /// How many samples there are.
     pub n_samples: usize,
     sample: Box<dyn Fn(usize) -> DVec3 + Sync + 'a>,
+    trimmed: Option<&'a TrimmedGrid>,
 }
 
 impl Lattice<'_> {
     /// The sample with this number, row by row. Panics when there is none.
     pub fn sample(&self, k: usize) -> DVec3 {
         (self.sample)(k)
+    }
+
+    /// Whether the line between two neighbors is torn open.
+    pub(crate) fn is_torn(&self, a: usize, b: usize) -> bool {
+        self.trimmed.is_some_and(|trimmed| trimmed.is_torn(a as u32, b as u32))
     }
 
     /// How many rows there are.
@@ -190,6 +196,45 @@ impl Surface {
                 self.turned(n_columns, points)
             }
         };
+        self.at_scale(sheets, n_not_positive, places)
+    }
+
+    /// As [`sample_at`](Self::sample_at), but cut off smoothly where formulas have no value, and torn open
+    /// where they jump. Heights outside of `heights` are left out; gaps between heights that are closer
+    /// than `closes` are filled. Both are coordinates before any is multiplied.
+    pub(crate) fn sample_torn(
+        &self,
+        places: Places,
+        heights: Option<(f64, f64)>,
+        closes: f64,
+    ) -> Result<SampledSurface, SamplingError> {
+        let Source::Formulas { formulas, domain } = &self.source else {
+            return self.sample_at(Some(places));
+        };
+        let domain = domain.as_ref().map(|domain| self.domain_function(domain));
+        let cutting = Cutting { domain: domain.as_ref(), heights, closes };
+        let sample = |formula: &Formula| {
+            let [xs, ys] = [Axis::First, Axis::Second].map(|axis| places.along(axis).to_vec());
+            let jets = formula.jets().scaled(self.own_scales());
+            TrimmedGrid::sample_torn(&self.function(formula), jets, &cutting, xs, ys)
+        };
+        let grids = formulas.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
+        let sheets = if grids.iter().all(TrimmedGrid::is_whole) {
+            Samples::Grids(grids.iter().map(|g| g.grid().clone()).collect())
+        } else {
+            joined_at_rim(grids)
+        };
+        self.at_scale(sheets, 0, Some(places))
+    }
+
+    /// The samples as they are drawn.
+    fn at_scale(
+        &self,
+        sheets: Samples,
+        n_not_positive: usize,
+        places: Option<Places>,
+    ) -> Result<SampledSurface, SamplingError> {
+        let scales = self.own_scales();
         let formulas = match &self.source {
             Source::Formulas { formulas, .. } => formulas.clone(),
             _ => Vec::new(),
@@ -261,14 +306,17 @@ impl Surface {
         domain: Option<&Formula>,
         on: &impl Fn() -> (Vec<f64>, Vec<f64>),
     ) -> Result<Vec<TrimmedGrid>, SamplingError> {
-        let [of_x, of_y, _] = self.own_scales();
-        let domain = domain
-            .map(|domain| HeightFunction::scaled(domain.clone(), [of_x, of_y, AxisScale::DATA]));
+        let domain = domain.map(|domain| self.domain_function(domain));
         let sample = |formula: &Formula| {
             let (xs, ys) = on();
             TrimmedGrid::sample_at(&self.function(formula), domain.as_ref(), xs, ys)
         };
         Ok(formulas.iter().map(sample).collect::<Result<_, _>>()?)
+    }
+
+    fn domain_function(&self, domain: &Formula) -> HeightFunction {
+        let [of_x, of_y, _] = self.own_scales();
+        HeightFunction::scaled(domain.clone(), [of_x, of_y, AxisScale::DATA])
     }
 
     fn function(&self, formula: &Formula) -> HeightFunction {
@@ -318,6 +366,14 @@ impl SampledSurface {
     /// The lines of the lattice, if formulas were sampled, in coordinates before any was multiplied.
     pub(crate) fn places(&self) -> Option<&Places> {
         self.places.as_ref()
+    }
+
+    /// Whether heights seem to grow without end somewhere, where it is cut off there.
+    pub(crate) fn has_poles(&self) -> bool {
+        match &self.sheets {
+            Samples::Trimmed { grids, .. } => grids.iter().any(TrimmedGrid::has_poles),
+            _ => false,
+        }
     }
 
     /// What coordinates were multiplied by so that the box has its proportions.
@@ -430,7 +486,7 @@ impl SampledSurface {
             Samples::Grids(grids) => {
                 for (sheet, grid) in grids.iter().enumerate() {
                     mesh.begin_sheet(function(sheet));
-                    mesh.push_grid_at(grid, lines, places);
+                    mesh.push_grid_at(grid, lines, places, &|_, _| false);
                 }
             }
             Samples::Trimmed { grids, .. } => {
@@ -443,7 +499,7 @@ impl SampledSurface {
                 mesh.push_triangles(points, triangles, lines.triangles);
             }
             Samples::Lattice { n_columns, points } => {
-                mesh.push_lattice_at(*n_columns, points, lines, places);
+                mesh.push_lattice_at(*n_columns, points, lines, places, &|_, _| false);
             }
         }
         mesh
@@ -451,16 +507,19 @@ impl SampledSurface {
 
     /// The samples that grid lines run through, one lattice for each sheet.
     pub fn lattices(&self) -> Vec<Lattice<'_>> {
-        fn of(grid: &Grid) -> Lattice<'_> {
+        fn of<'a>(grid: &'a Grid, trimmed: Option<&'a TrimmedGrid>) -> Lattice<'a> {
             let sample = Box::new(|k: usize| grid.point(k as u32));
-            Lattice { n_columns: grid.xs().len(), n_samples: grid.zs().len(), sample }
+            Lattice { n_columns: grid.xs().len(), n_samples: grid.zs().len(), sample, trimmed }
         }
         match &self.sheets {
-            Samples::Grids(grids) => grids.iter().map(of).collect(),
-            Samples::Trimmed { grids, .. } => grids.iter().map(|g| of(g.grid())).collect(),
+            Samples::Grids(grids) => grids.iter().map(|grid| of(grid, None)).collect(),
+            Samples::Trimmed { grids, .. } => {
+                grids.iter().map(|trimmed| of(trimmed.grid(), Some(trimmed))).collect()
+            }
             Samples::Lattice { n_columns, points } => {
                 let sample = Box::new(|k: usize| points[k]);
-                vec![Lattice { n_columns: *n_columns, n_samples: points.len(), sample }]
+                let (n_columns, n_samples) = (*n_columns, points.len());
+                vec![Lattice { n_columns, n_samples, sample, trimmed: None }]
             }
             Samples::Triangles { .. } => Vec::new(),
         }

@@ -115,8 +115,9 @@ struct LineArgs {
     every: usize,
     /// How far lines may deviate from the true curves, on paper; 0 draws the samples as they are
     ///
-    /// Formulas are sampled up to eight times as finely as --samples says, but only the lines of
-    /// --samples are drawn. Not used with --engine floating-horizon or --lines mesh.
+    /// Formulas are sampled as finely as that takes, which interval arithmetic proves, but only the lines
+    /// of --samples are drawn. Surfaces are left open at jumps and poles; 0 draws across them. Not used
+    /// with --engine floating-horizon or --lines mesh.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0.1")]
     smoothness: f64,
     /// Draw lines on the underside of the surface with their own pen and layer, `underside`

@@ -70,6 +70,19 @@ impl PaperBound {
         Some(SeenPoint { w, g })
     }
 
+    /// A height, in model units, that is nowhere in a box longer than `length_mm` on paper.
+    pub(super) fn height_of(&self, length_mm: f64, (low, high): (DVec3, DVec3)) -> f64 {
+        let corner = |k: usize| {
+            let of = |axis: usize| if k >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            self.see(DVec3::new(of(0), of(1), of(2)))
+        };
+        let largest = (0..8)
+            .filter_map(corner)
+            .map(|seen| self.mm_per_unit * seen.g.z / seen.w)
+            .fold(0.0, f64::max);
+        if largest > 0.0 { (length_mm / largest).min(high.z - low.z) } else { 0.0 }
+    }
+
     /// The greatest distance on paper, in millimeters, of a curve from its chord that is within `off` of
     /// it along each axis. Infinite if it may pass the near plane.
     pub(super) fn on_paper(&self, ends: &[SeenPoint], off: DVec3) -> f64 {

@@ -9,7 +9,7 @@ use super::bound::PaperBound;
 use super::certified_cells::certify_cells;
 use super::certified_line::{CertifiedLine, LineCertificate};
 use super::options::SurfaceLines;
-use crate::surface::formula::{Axis, JetGraph};
+use crate::surface::formula::{Axis, Interval, JetGraph};
 use crate::surface::{Lattice, Places, SampledSurface, SheetJets};
 
 /// What is proved about a drawing of formulas.
@@ -25,6 +25,8 @@ pub struct Certificate {
     pub cells: usize,
     /// Those of them that are not certified.
     pub uncertified_cells: usize,
+    /// Places of drawn lines at which the surface is torn open.
+    pub tears: usize,
     /// How often formulas were enclosed.
     pub jets: usize,
     /// Where the first chord is that is not certified, by x and y or u and v.
@@ -50,7 +52,11 @@ impl fmt::Display for Certificate {
                 write!(f, ", first near ({}, {})", brief(p.x), brief(p.y))?;
             }
         }
-        Ok(())
+        match self.tears {
+            0 => Ok(()),
+            1 => write!(f, "; 1 tear of a line left open"),
+            n => write!(f, "; {n} tears of lines left open"),
+        }
     }
 }
 
@@ -74,6 +80,8 @@ pub(super) struct Certifier<'a> {
     pub(super) sampled: &'a SampledSurface,
     /// What coordinates are multiplied by to be drawn; `sampled` may have other factors.
     pub(super) factors: DVec3,
+    /// The heights that are drawn, before any scaling, if not all are.
+    pub(super) heights: Option<(f64, f64)>,
     pub(super) paper: &'a PaperBound,
     pub(super) lines: &'a SurfaceLines,
 }
@@ -156,11 +164,20 @@ impl Certifier<'_> {
                 Axis::First => self.point(lattice, line * n_columns + k),
                 Axis::Second => self.point(lattice, k * n_columns + line),
             };
+            let is_torn = |k: usize| match axis {
+                Axis::First => lattice.is_torn(line * n_columns + k - 1, line * n_columns + k),
+                Axis::Second => lattice.is_torn((k - 1) * n_columns + line, k * n_columns + line),
+            };
             let mut certified = CertifiedLine {
                 paper: self.paper,
                 formulas: formulas.collect(),
                 places: places.along(axis),
                 points: (0..places.along(axis).len()).map(sample).collect(),
+                torn: (1..places.along(axis).len()).map(is_torn).collect(),
+                heights: self.heights.map(|(low, high)| {
+                    let (a, b) = (low * self.factors.z, high * self.factors.z);
+                    Interval::new(a.min(b), a.max(b))
+                }),
                 allowed_mm: self.lines.smoothness_mm,
             };
             (line, certified.certify(searches))
@@ -174,6 +191,7 @@ impl Certificate {
         self.chords += line.n_chords;
         self.uncertified_chords += line.failed.len();
         self.bound_mm = self.bound_mm.max(line.bound_mm);
+        self.tears += line.n_torn;
         self.jets += line.n_jets;
         if let (None, Some(&cell)) = (self.first, line.failed.first()) {
             let (along, across) = (places.along(axis), places.along(axis.other()));

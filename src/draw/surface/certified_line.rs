@@ -38,6 +38,10 @@ pub(super) struct CertifiedLine<'a> {
     /// Where the samples are along the line, and in space.
     pub(super) places: &'a [f64],
     pub(super) points: Vec<DVec3>,
+    /// The cells whose chords are torn open.
+    pub(super) torn: Vec<bool>,
+    /// What heights are drawn, if not all are.
+    pub(super) heights: Option<Interval>,
     /// Most millimeters on paper.
     pub(super) allowed_mm: f64,
 }
@@ -51,6 +55,8 @@ pub(super) struct LineCertificate {
     pub(super) bound_mm: f64,
     /// The cells whose chords are not certified.
     pub(super) failed: Vec<u32>,
+    /// Chords that are torn open.
+    pub(super) n_torn: usize,
     /// Evaluations of jets.
     pub(super) n_jets: usize,
     /// Into how many parts cells should be divided, where that is more than one.
@@ -98,12 +104,18 @@ impl CertifiedLine<'_> {
         let mut known = LineCertificate::default();
         let seen: Vec<Option<SeenPoint>> = self.points.iter().map(|p| self.paper.see(*p)).collect();
         let n_cells = self.places.len() - 1;
-        known.n_chords = seen.windows(2).filter(|pair| pair.iter().all(Option::is_some)).count();
+        let has_chord = |cell: usize| seen[cell].is_some() && seen[cell + 1].is_some();
+        known.n_torn = self.torn.iter().filter(|torn| **torn).count();
+        known.n_chords = (0..n_cells).filter(|&k| has_chord(k) && !self.torn[k]).count();
         for start in (0..n_cells).step_by(BLOCK) {
             self.block(start, (start + BLOCK).min(n_cells), &seen, &mut known);
         }
-        if searches && !known.failed.is_empty() {
-            self.search(&mut known);
+        if searches {
+            // Lines that end in a cell are to be smooth up to their end.
+            let broken = (0..n_cells).filter(|&cell| {
+                self.torn[cell] || seen[cell].is_some() != seen[cell + 1].is_some()
+            });
+            self.search(broken.map(|cell| cell as u32).collect(), &mut known);
         }
         known
     }
@@ -116,11 +128,14 @@ impl CertifiedLine<'_> {
         seen: &[Option<SeenPoint>],
         known: &mut LineCertificate,
     ) {
-        let ends = |cell: usize| Some([seen[cell]?, seen[cell + 1]?]);
+        let torn = &self.torn;
+        let ends = |cell: usize| {
+            if torn[cell] { None } else { Some([seen[cell]?, seen[cell + 1]?]) }
+        };
         if (from..to).all(|cell| ends(cell).is_none()) {
             return;
         }
-        let jets = self.enclose(self.places[from], self.places[to], known);
+        let jets = enclose(&mut self.formulas, self.places[from], self.places[to], known);
         let mut most = 0.0_f64;
         for cell in from..to {
             let Some(ends) = ends(cell) else { continue };
@@ -138,26 +153,6 @@ impl CertifiedLine<'_> {
         }
     }
 
-    /// The jets of all formulas between two places, at scale.
-    fn enclose(&mut self, from: f64, to: f64, known: &mut LineCertificate) -> [Option<Jet>; 3] {
-        let mut jets = [None; 3];
-        let range = Interval::new(from.min(to), from.max(to));
-        for (axis, line, scale) in &mut self.formulas {
-            known.n_jets += 1;
-            let jet = line.over(range);
-            let scaled = |interval: Interval| {
-                if *scale == 1.0 { interval } else { interval.times(*scale) }
-            };
-            jets[*axis] = Some(Jet {
-                value: scaled(jet.value),
-                first: scaled(jet.first),
-                second: scaled(jet.second),
-                ..jet
-            });
-        }
-        jets
-    }
-
     /// How far the curve is from the chord between two samples along each axis in space.
     fn off(&self, jets: &[Option<Jet>; 3], [(from, p), (to, q)]: [(f64, DVec3); 2]) -> DVec3 {
         let (h, p, q) = if from < to { (to - from, p, q) } else { (from - to, q, p) };
@@ -167,18 +162,17 @@ impl CertifiedLine<'_> {
 
     /// Finds into how many parts each cell that fails must be divided, and where more is needed, the
     /// places of parts that are halved as often as it takes.
-    fn search(&mut self, known: &mut LineCertificate) {
+    fn search(&mut self, broken: Vec<u32>, known: &mut LineCertificate) {
         let mut deep = BinaryHeap::new();
-        for cell in std::mem::take(&mut known.failed) {
+        for cell in known.failed.clone().into_iter().chain(broken) {
             let k = cell as usize;
             let ends = [self.places[k], self.places[k + 1]];
-            let points = [self.points[k], self.points[k + 1]];
+            let points = [0, 1].map(|n| self.point(self.points[k + n], ends[n], known));
             let whole = Part { ends, points, bound_mm: 0.0, off: 0.0, depth: 0 };
             let n = self.parts(whole, known, &mut deep);
             if n > 1 {
                 known.parts.push((cell, n));
             }
-            known.failed.push(cell);
         }
         let most = known.n_jets + MOST_DEEP;
         while let Some(part) = deep.pop() {
@@ -233,7 +227,11 @@ impl CertifiedLine<'_> {
     /// A part with its bound on paper, the class of its formulas, and its bound by second derivatives
     /// alone.
     fn judged(&mut self, part: Part, known: &mut LineCertificate) -> (Part, Class, f64) {
-        let jets = self.enclose(part.ends[0], part.ends[1], known);
+        let jets = enclose(&mut self.formulas, part.ends[0], part.ends[1], known);
+        let is_drawn = |heights: Interval| jets[2].is_none_or(|z| z.value.overlaps(heights));
+        if !self.heights.is_none_or(is_drawn) {
+            return (Part { bound_mm: 0.0, ..part }, Class::Nowhere, 0.0);
+        }
         let class = jets.iter().flatten().map(|jet| jet.class).min().unwrap_or(Class::Smooth);
         let [p, q] = part.points;
         // What is not seen needs no samples.
@@ -248,6 +246,16 @@ impl CertifiedLine<'_> {
         (Part { bound_mm, off: off.max_element(), ..part }, class, smooth_mm)
     }
 
+    /// The point of the curve at a place, of which those coordinates are given that are linear.
+    fn point(&mut self, mut point: DVec3, at: f64, known: &mut LineCertificate) -> DVec3 {
+        for (axis, jet) in enclose(&mut self.formulas, at, at, known).into_iter().enumerate() {
+            let Some(jet) = jet else { continue };
+            let has_value = jet.class > Class::Nowhere && jet.value.is_bounded();
+            point[axis] = if has_value { jet.value.middle() } else { f64::NAN };
+        }
+        point
+    }
+
     /// Both halves of a part, and where they meet; none if no number is between its ends.
     fn halves(&mut self, part: Part, known: &mut LineCertificate) -> Option<(f64, [Part; 2])> {
         let [from, to] = part.ends;
@@ -256,12 +264,7 @@ impl CertifiedLine<'_> {
             return None;
         }
         let [p, q] = part.points;
-        let mut point = 0.5 * p + 0.5 * q;
-        for (axis, jet) in self.enclose(middle, middle, known).into_iter().enumerate() {
-            let Some(jet) = jet else { continue };
-            let has_value = jet.class > Class::Nowhere && jet.value.is_bounded();
-            point[axis] = if has_value { jet.value.middle() } else { f64::NAN };
-        }
+        let point = self.point(0.5 * p + 0.5 * q, middle, known);
         let half = |ends: [f64; 2], points: [DVec3; 2]| Part {
             ends,
             points,
@@ -271,4 +274,29 @@ impl CertifiedLine<'_> {
         };
         Some((middle, [half([from, middle], [p, point]), half([middle, to], [point, q])]))
     }
+}
+
+/// The jets of all formulas between two places of a line, at scale.
+fn enclose(
+    formulas: &mut [(usize, JetLine, f64)],
+    from: f64,
+    to: f64,
+    known: &mut LineCertificate,
+) -> [Option<Jet>; 3] {
+    let mut jets = [None; 3];
+    let range = Interval::new(from.min(to), from.max(to));
+    for (axis, line, scale) in formulas {
+        known.n_jets += 1;
+        let jet = line.over(range);
+        let scaled = |interval: Interval| {
+            if *scale == 1.0 { interval } else { interval.times(*scale) }
+        };
+        jets[*axis] = Some(Jet {
+            value: scaled(jet.value),
+            first: scaled(jet.first),
+            second: scaled(jet.second),
+            ..jet
+        });
+    }
+    jets
 }

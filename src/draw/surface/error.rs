@@ -103,6 +103,14 @@ pub enum SurfaceNote {
     /// Lines may be farther from the function than asked for, even with the finest samples.
     #[error("{0}")]
     Uncertified(Certificate),
+    /// The formula grows without end somewhere, so that only usual heights are drawn.
+    #[error("the formula grows without end; drawn are heights from {low} to {high}")]
+    Poles {
+        /// The lowest, before any scaling, rounded to six digits.
+        low: f64,
+        /// The highest, before any scaling, rounded to six digits.
+        high: f64,
+    },
     /// Two sheets were joined at their common rim.
     #[error("both sheets end at the same rim: {0} rim points took the mean height of the two")]
     RimsJoined(usize),

@@ -41,7 +41,7 @@ pub struct SurfaceLines {
     /// All edges of all triangles.
     pub mesh: bool,
     /// How far lines may deviate from the true curves, in millimeters on paper; 0 draws them as
-    /// sampled. Formulas are sampled up to eight times as finely as the surface says, and only the
+    /// sampled. Formulas are sampled as finely as that takes, and torn open at jumps and poles; only the
     /// lines of its own samples are drawn. The floating horizon and `mesh` ignore it.
     pub smoothness_mm: f64,
     /// Keep lines on the underside of the surface apart.

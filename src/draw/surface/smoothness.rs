@@ -25,6 +25,10 @@ const MOST_MESH_SAMPLES: usize = 250_000;
 /// Most places along an axis beyond even parts of cells, for each own line; and at least so many.
 const MOST_FURTHER: (usize, usize) = (2, 256);
 
+/// Heights that are closer than this on paper are joined where a formula has no value between them, in
+/// millimeters. If it is larger, small steps close; if smaller, gaps of rounding stay open.
+const CLOSED_MM: f64 = 0.01;
+
 /// Most searches for samples.
 const MOST_SEARCHES: usize = 4;
 
@@ -37,6 +41,8 @@ pub(super) struct SmoothSurface {
     pub(super) camera: Camera,
     /// How close its lines are to the formulas; none if nothing is to be proved.
     pub(super) certificate: Option<Certificate>,
+    /// The heights that are drawn, as coordinates before any is multiplied, if others grow without end.
+    pub(super) heights: Option<(f64, f64)>,
 }
 
 /// Samples the surface, more finely where its lines would deviate from the function by more than
@@ -53,18 +59,33 @@ pub(super) fn sample(
     let is_wanted = lines.smoothness_mm > 0.0 && !lines.mesh && !is_floating;
     let sheets = if is_wanted && lines.has_grid_lines() { surface.jets() } else { Vec::new() };
     let Some(places) = own.places().cloned().filter(|_| !sheets.is_empty()) else {
-        return Ok(SmoothSurface { surface: own, camera, certificate: None });
+        return Ok(SmoothSurface { surface: own, camera, certificate: None, heights: None });
     };
     let seen = |sampled: &SampledSurface, camera: &Camera| {
         let page = Page::place(&sampled.extent(camera), camera, page);
         PaperBound::new(camera, page.map_or(0.0, |page| page.mm_per_image_unit()))
     };
-    let (mut camera, mut factors) = (camera, own.factors());
+    let closes = |paper: &PaperBound, sampled: &SampledSurface| {
+        paper.height_of(CLOSED_MM, sampled.bounds()) / sampled.factors().z.abs()
+    };
+    // Heights near poles say nothing about the scale of the others.
+    let ((low, high), usual) = (own.bounds(), usual_heights(&own));
+    let usual = usual.map_or(high.z - low.z, |(a, b)| (b - a) * own.factors().z.abs());
+    let gap = closes(&seen(&own, &camera), &own) * (usual / (high.z - low.z)).min(1.0);
+    let mut heights = None;
+    let mut torn = surface.sample_torn(places.clone(), None, gap)?;
+    if torn.has_poles() {
+        heights = usual_heights(&own);
+        torn = surface.sample_torn(places.clone(), heights, gap)?;
+    }
+    let own = torn;
+    let (mut camera, mut factors) = (view.camera(own.bounds())?, own.factors());
     let mut paper = seen(&own, &camera);
     let mut refined: Option<SampledSurface> = None;
     let mut n_jets = 0;
     for _ in 0..MOST_SEARCHES {
-        let certifier = Certifier { sheets: &sheets, sampled: &own, factors, paper: &paper, lines };
+        let certifier =
+            Certifier { sheets: &sheets, sampled: &own, factors, heights, paper: &paper, lines };
         let (certificate, needs) = certifier.certify(true);
         n_jets += certificate.jets;
         if needs.are_none() {
@@ -73,7 +94,8 @@ pub(super) fn sample(
         }
         let by_grid = matches!(grid_to_draw(&own, lines, &camera), Ok(Some(_)));
         let most = if by_grid { MOST_SAMPLES } else { MOST_MESH_SAMPLES };
-        let sampled = surface.sample_at(Some(divided(&places, needs, most)))?;
+        let gap = closes(&paper, &own);
+        let sampled = surface.sample_torn(divided(&places, needs, most), heights, gap)?;
         camera = view.camera(sampled.bounds())?;
         paper = seen(&sampled, &camera);
         let before = std::mem::replace(&mut factors, sampled.factors());
@@ -86,11 +108,28 @@ pub(super) fn sample(
     let camera = view.camera(sampled.bounds())?;
     let paper = seen(&sampled, &camera);
     let factors = sampled.factors();
-    let certifier = Certifier { sheets: &sheets, sampled: &sampled, factors, paper: &paper, lines };
+    let certifier =
+        Certifier { sheets: &sheets, sampled: &sampled, factors, heights, paper: &paper, lines };
     let (mut certificate, _) = certifier.certify(false);
     certifier.certify_cells(&mut certificate);
     certificate.jets += n_jets;
-    Ok(SmoothSurface { surface: sampled, camera, certificate: Some(certificate) })
+    Ok(SmoothSurface { surface: sampled, camera, certificate: Some(certificate), heights })
+}
+
+/// The heights that are worth drawing of a surface with poles: those of all but the lowest and highest
+/// twentieth of its samples, and half as much beyond them.
+fn usual_heights(sampled: &SampledSurface) -> Option<(f64, f64)> {
+    let mut heights: Vec<f64> = Vec::new();
+    for lattice in sampled.lattices() {
+        let all = (0..lattice.n_samples).map(|k| lattice.sample(k).z / sampled.factors().z);
+        heights.extend(all.filter(|z| z.is_finite()));
+    }
+    let part = heights.len() / 20;
+    let last = heights.len().checked_sub(1)?;
+    let mut nth = |k: usize| *heights.select_nth_unstable_by(k, f64::total_cmp).1;
+    let [least, low, high, most] = [0, part, last - part, last].map(&mut nth);
+    let beyond = 0.5 * (high - low);
+    (beyond > 0.0).then_some(((low - beyond).max(least), (high + beyond).min(most)))
 }
 
 /// Own lines and as many others between them as are needed and can be afforded.
@@ -182,8 +221,14 @@ mod tests {
             .map_or(0.0, |p| p.mm_per_image_unit());
         let paper = PaperBound::new(camera, scale);
         let (sheets, factors) = (surface.jets(), sampled.factors());
-        let certifier =
-            Certifier { sheets: &sheets, sampled, factors, paper: &paper, lines: &lines };
+        let certifier = Certifier {
+            sheets: &sheets,
+            sampled,
+            factors,
+            heights: smooth.heights,
+            paper: &paper,
+            lines: &lines,
+        };
         let formula = Formula::parse(text, Variables::Plane).expect(text);
         let places = sampled.places().expect("places");
         let certificate = smooth.certificate.expect("a certificate");

@@ -61,6 +61,8 @@ pictures! {
     spiral_stair the_stair_is_up_to_date "../../../examples/spiral_stair.rs";
     spot the_cow_is_up_to_date "../../../examples/spot.rs";
     torus_knot the_knot_is_up_to_date "../../../examples/torus_knot.rs";
+    surface_branch_cut the_cut_is_up_to_date "../../../examples/surface_branch_cut.rs";
+    surface_pole_ring the_ring_is_up_to_date "../../../examples/surface_pole_ring.rs";
     surface_klein the_bottle_is_up_to_date "../../../examples/surface_klein.rs";
     surface_saddle the_saddle_is_up_to_date "../../../examples/surface_saddle.rs";
     surface_sinc the_hat_is_up_to_date "../../../examples/surface_sinc.rs";

@@ -151,8 +151,8 @@ fn parametric_functions_close() {
 #[test]
 fn sheets_of_surfaces_say_what_is_worth_knowing() {
     let page = PageOptions::from(Paper::A5);
-    let steps = Surface::formula("x < 0.3 ? 0 : 1").unwrap().samples(9, 9);
-    let sheet = steps.draw(&View::default(), &SurfaceLines::default()).on(page).unwrap();
+    let waves = Surface::formula("sin(900*x)").unwrap().samples(9, 9);
+    let sheet = waves.draw(&View::default(), &SurfaceLines::default()).on(page).unwrap();
     assert!(matches!(sheet.notes(), [SurfaceNote::Uncertified(_)]), "{:?}", sheet.notes());
     let smooth = Surface::formula("x + y").unwrap();
     let sheet = smooth.draw(&View::default(), &SurfaceLines::default()).on(page).unwrap();

@@ -260,8 +260,8 @@ fn what_is_odd_about_a_drawing_is_noted() {
     let levels = SurfaceLines { levels: Some(Levels::At(vec![6.0])), ..bare() };
     let none = SurfaceNote::NoLevels(NoLevels::OutOfRange { low: -5.0, high: 5.0 });
     assert_eq!(drawn(&plane, NamedView::Isometric, &levels).notes, [none]);
-    let cliff = of("x < 0.3 ? 0 : 1").samples(9, 9);
-    let notes = drawn(&cliff, NamedView::Isometric, &bare()).notes;
+    let waves = of("sin(900*x)").samples(9, 9);
+    let notes = drawn(&waves, NamedView::Isometric, &bare()).notes;
     assert!(matches!(notes[..], [SurfaceNote::Uncertified(_)]), "{notes:?}");
 }
 

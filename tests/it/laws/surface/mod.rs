@@ -13,5 +13,6 @@ mod meshed;
 mod pen_path;
 mod points;
 mod scales;
+mod tears;
 mod tin;
 mod walls;
