@@ -209,7 +209,9 @@ impl Surface {
         closes: f64,
     ) -> Result<SampledSurface, SamplingError> {
         let Source::Formulas { formulas, domain } = &self.source else {
-            return self.sample_at(Some(places));
+            // Those of a sampled surface, which were turned with it.
+            let is_turned = matches!(self.source, Source::Parametric { .. }) && self.is_turned();
+            return self.sample_at(Some(if is_turned { places.turned() } else { places }));
         };
         let domain = domain.as_ref().map(|domain| self.domain_function(domain));
         let cutting = Cutting { domain: domain.as_ref(), heights, closes };

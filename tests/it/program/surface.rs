@@ -223,7 +223,7 @@ fn bad_input_is_told_in_one_line() {
     let run = |arguments: &[&str], message: &str| fails(&folder, arguments, 1, message);
     run(&["1/0"], "no sample has a height");
     run(&["(x < 100) ? 0/0 : x"], "no sample has a height");
-    run(&["abs(x) < 0.01 && abs(y) < 0.01 ? 1 : 0/0"], "no four neighboring samples");
+    run(&["x == 0 && y == 0 ? 1 : 0/0"], "no four neighboring samples");
     run(&["--grid", "heights"], "line 2: 2 cells, but the first row has 3");
     run(&["--grid", "missing"], "missing: No such file");
     for (content, message) in [
