@@ -130,7 +130,7 @@ pub fn draw_surface(
     if let Some(certificate) = certificate.filter(|certificate| !certificate.holds()) {
         notes.push(SurfaceNote::Uncertified(certificate));
     }
-    if let Some((low, high)) = heights {
+    if let Some((low, high)) = heights.filter(|_| !surface.has_given_heights()) {
         let scale = AxisScale { factor: 1.0, ..surface.scales()[2] };
         let [low, high] = [low, high].map(|height| brief(scale.value(height)));
         notes.push(SurfaceNote::Poles { low, high });

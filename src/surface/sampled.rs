@@ -45,6 +45,7 @@ pub struct SampledSurface {
     factors: DVec3,
     /// The lines of the lattice before that, if formulas were sampled.
     places: Option<Places>,
+    has_given_heights: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -100,7 +101,21 @@ impl Surface {
     /// # Errors
     /// See [`SamplingError`].
     pub fn sample(&self) -> Result<SampledSurface, SamplingError> {
-        self.sample_at(self.places()?)
+        match (self.places()?, self.heights()) {
+            (Some(places), Some(heights)) => self.sample_torn(places, Some(heights), 0.0),
+            (places, _) => self.sample_at(places),
+        }
+    }
+
+    /// The range of heights that is asked for, if it is, in coordinates before any is multiplied.
+    pub(crate) fn heights(&self) -> Option<(f64, f64)> {
+        let scale = self.own_scales()[2];
+        let drawn = |z: f64| match scale.is_log && z <= 0.0 {
+            true => f64::NEG_INFINITY,
+            false => scale.drawn(z),
+        };
+        let is_formula = matches!(self.source, Source::Formulas { .. });
+        self.z.filter(|_| is_formula).map(|(low, high)| (drawn(low), drawn(high)))
     }
 
     /// The surface's own lines, if formulas are sampled, in coordinates before any is multiplied.
@@ -245,8 +260,16 @@ impl Surface {
         let is_turned = matches!(self.source, Source::Parametric { .. }) && self.is_turned();
         let places = if is_turned { places.map(Places::turned) } else { places };
         let factors = DVec3::ONE;
-        let mut surface =
-            SampledSurface { sheets, formulas, scales, ranges, n_not_positive, factors, places };
+        let mut surface = SampledSurface {
+            sheets,
+            formulas,
+            scales,
+            ranges,
+            n_not_positive,
+            factors,
+            places,
+            has_given_heights: self.heights().is_some(),
+        };
         if scales[2].is_log && !surface.formulas.is_empty() {
             surface.n_not_positive = surface.count_not_positive();
         }
@@ -368,6 +391,11 @@ impl SampledSurface {
     /// The lines of the lattice, if formulas were sampled, in coordinates before any was multiplied.
     pub(crate) fn places(&self) -> Option<&Places> {
         self.places.as_ref()
+    }
+
+    /// Whether the range of its heights was asked for.
+    pub(crate) fn has_given_heights(&self) -> bool {
+        self.has_given_heights
     }
 
     /// Whether heights seem to grow without end somewhere, where it is cut off there.

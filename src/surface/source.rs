@@ -41,6 +41,8 @@ pub struct Surface {
     pub(super) source: Source,
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
+    /// Heights outside are cut off.
+    pub(super) z: Option<(f64, f64)>,
     pub(super) samples: (usize, usize),
     pub(super) aspect: Aspect,
     pub(super) z_scale: f64,
@@ -215,7 +217,17 @@ impl Surface {
     fn new(source: Source, aspect: Aspect) -> Self {
         let (x, y) = (DEFAULT_RANGE, DEFAULT_RANGE);
         let samples = (DEFAULT_SAMPLES, DEFAULT_SAMPLES);
-        Self { source, x, y, samples, aspect, z_scale: 1.0, log: [false; 3], reversed: [false; 2] }
+        Self {
+            source,
+            x,
+            y,
+            z: None,
+            samples,
+            aspect,
+            z_scale: 1.0,
+            log: [false; 3],
+            reversed: [false; 2],
+        }
     }
 
     /// Adds a sheet. It matters only for surfaces of formulas.
@@ -257,6 +269,21 @@ impl Surface {
     /// The range of y that formulas are sampled over, as for [`x`](Self::x).
     pub fn y(mut self, from: f64, to: f64) -> Self {
         self.y = (from, to);
+        self
+    }
+
+    /// The heights that are drawn, the smaller one first: the surface is cut along the others. It matters
+    /// only for surfaces of formulas. Without it all heights are drawn, but for those that grow without
+    /// end at poles.
+    ///
+    /// ```
+    /// use hiddenline::Surface;
+    ///
+    /// let bowl = Surface::formula("x^2 + y^2")?.z(0.0, 4.0);
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn z(mut self, low: f64, high: f64) -> Self {
+        self.z = Some((low, high));
         self
     }
 

@@ -49,6 +49,7 @@ pub(in crate::cli) struct SurfaceInput {
     pub(super) aspect: Aspect,
     pub(super) log: [bool; 3],
     pub(super) reversed: [bool; 2],
+    pub(super) z: Option<(f64, f64)>,
 }
 
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
@@ -107,6 +108,10 @@ impl SurfaceInput {
                 let y = self.options.y.unwrap_or(DEFAULT_RANGE);
                 let surface = Surface::formulas(formulas.clone()).x(x.0, x.1).y(y.0, y.1);
                 let surface = surface.samples(samples.0, samples.1);
+                let surface = match self.z {
+                    Some((low, high)) => surface.z(low, high),
+                    None => surface,
+                };
                 match domain {
                     Some((domain, _)) => surface.within(domain.clone()),
                     None => surface,

@@ -56,6 +56,10 @@ pub(in crate::cli) struct SurfaceInputArgs {
     /// Range of y, as for x [default: -5:5, for a file 0 to rows - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     y: Option<(f64, f64)>,
+    /// Range of heights; a formula's surface is cut off outside [default: all, but for poles]
+    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["grid", "points", "parametric"])]
+    z: Option<(f64, f64)>,
     /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]
     #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
     samples: Option<(usize, usize)>,
@@ -132,7 +136,8 @@ impl SurfaceInputArgs {
             });
             SurfaceSource::Formulas { texts, formulas, domain: domain.transpose()?, samples }
         } else {
-            let is_given = self.x.is_some() || self.y.is_some() || self.samples.is_some();
+            let is_range = [self.x, self.y, self.z].iter().any(Option::is_some);
+            let is_given = is_range || self.samples.is_some();
             if self.nodata.is_some() {
                 return Err("--nodata is for --grid and --points".into());
             }
@@ -143,7 +148,7 @@ impl SurfaceInputArgs {
                 || !parameters.is_empty()
             {
                 return Err(
-                    "--x, --y, --set, --samples, --z-scale, --aspect and --log are for surfaces: give \
+                    "--x, --y, --z, --set, --samples, --z-scale, --aspect and --log are for surfaces: give \
                             --expr, --grid, --points or --parametric"
                         .into(),
                 );
@@ -163,6 +168,7 @@ impl SurfaceInputArgs {
                 nodata: self.nodata,
             },
             duplicates: self.duplicates.unwrap_or_default(),
+            z: self.z,
             z_scale: self.z_scale,
             aspect: self.aspect.unwrap_or(default_aspect),
         }))

@@ -143,7 +143,7 @@ fn text_height_mm(page: &Page, pen_width_mm: f64) -> f64 {
 pub fn axes_box(surface: &SampledSurface) -> AxesBox {
     let (low, high) = surface.bounds();
     let (scales, ranges) = (*surface.scales(), *surface.ranges());
-    AxesBox { low, high, scales, ranges, z_may_grow: true }
+    AxesBox { low, high, scales, ranges, z_may_grow: !surface.has_given_heights() }
 }
 
 impl Around {

@@ -41,7 +41,8 @@ pub(super) struct SmoothSurface {
     pub(super) camera: Camera,
     /// How close its lines are to the formulas; none if nothing is to be proved.
     pub(super) certificate: Option<Certificate>,
-    /// The heights that are drawn, as coordinates before any is multiplied, if others grow without end.
+    /// The heights that are drawn, as coordinates before any is multiplied, if others grow without end or
+    /// are not asked for.
     pub(super) heights: Option<(f64, f64)>,
 }
 
@@ -72,8 +73,8 @@ pub(super) fn sample(
     let ((low, high), usual) = (own.bounds(), usual_heights(&own));
     let usual = usual.map_or(high.z - low.z, |(a, b)| (b - a) * own.factors().z.abs());
     let gap = closes(&seen(&own, &camera), &own) * (usual / (high.z - low.z)).min(1.0);
-    let mut heights = None;
-    let mut torn = surface.sample_torn(places.clone(), None, gap)?;
+    let mut heights = surface.heights();
+    let mut torn = surface.sample_torn(places.clone(), heights, gap)?;
     if torn.has_poles() {
         heights = usual_heights(&own);
         torn = surface.sample_torn(places.clone(), heights, gap)?;

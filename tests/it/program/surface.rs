@@ -5,7 +5,7 @@ use std::process::Output;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::hiddenline;
+use super::{hiddenline, text};
 
 fn run(folder: &TempDir, arguments: &[&str]) -> Output {
     hiddenline(folder.path(), &[&["surface"], arguments].concat())
@@ -565,4 +565,19 @@ fn pens_are_chosen_by_sheet_and_kind_and_folds_have_only_the_pen_of_folds() {
             && stderr.contains("--pen level=… draws nothing"),
         "{stderr}"
     );
+}
+
+#[test]
+fn heights_outside_a_range_are_cut_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |more: &[&str]| hiddenline(folder.path(), &[&["surface"], more].concat());
+    let cut =
+        run(&["1/(x^2+y^2-4)", "--x", "-4:4", "--y", "-4:4", "--z", "-2:2", "-o", "ring.svg"]);
+    assert!(cut.status.success(), "{}", text(&cut.stderr));
+    assert!(!text(&cut.stderr).contains("grows"), "{}", text(&cut.stderr));
+    let empty = run(&["x+y", "--z", "20:30", "-o", "none.svg"]);
+    assert_eq!(empty.status.code(), Some(1));
+    assert!(!folder.path().join("none.svg").exists());
+    let turned = run(&["x+y", "--z", "3:1"]);
+    assert!(text(&turned.stderr).contains("the first number must be the smaller one"));
 }

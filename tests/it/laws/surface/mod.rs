@@ -5,6 +5,7 @@ mod damage;
 mod drawing;
 mod floating_horizon;
 mod height_files;
+mod heights;
 mod labels;
 mod level_lengths;
 mod margins;

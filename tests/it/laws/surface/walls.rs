@@ -1,4 +1,4 @@
-//! Lines on the back of the box around a surface: horizons against the mesh engine and the exact oracle.
+//! Lines on the back of the box around a surface: the horizons against the mesh engine.
 
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
