@@ -245,7 +245,16 @@ mod tests {
                         DVec3::new(x, y, formula.value(x, y) * factors.z)
                     };
                     let ends = [along[k], along[k + 1]].map(at);
-                    if !ends.iter().all(|p| paper.see(*p).is_some()) {
+                    // Chords that are drawn: not those that are torn, or end where nothing is.
+                    let n_columns = lattices[0].n_columns;
+                    let number = |k| match axis {
+                        Axis::First => line * n_columns + k,
+                        Axis::Second => k * n_columns + line,
+                    };
+                    let [first, next] = [k, k + 1].map(number);
+                    let is_sampled = |k| paper.see(lattices[0].sample(k)).is_some();
+                    let is_torn = lattices[0].is_torn(first, next);
+                    if is_torn || !is_sampled(first) || !is_sampled(next) {
                         continue;
                     }
                     counts[1] += 1;
