@@ -147,11 +147,17 @@ class Paper {
     context.stroke();
     context.font = "12px system-ui, sans-serif";
     context.textBaseline = "middle";
-    context.fillText(`${mm} mm`, x + mm * scale + 7, y - 2);
+    const length = `${mm} mm`;
+    const lengthAt = x + mm * scale + 7;
+    context.fillText(length, lengthAt, y - 2);
     const text = this.page.description ?? "";
-    context.textAlign = "right";
-    context.fillText(text, this.left + scale * this.page.width, y - 2);
-    context.textAlign = "left";
+    const right = this.left + scale * this.page.width;
+    // On a small sheet there is room for one of the two.
+    if (right - context.measureText(text).width > lengthAt + context.measureText(length).width + 7) {
+      context.textAlign = "right";
+      context.fillText(text, right, y - 2);
+      context.textAlign = "left";
+    }
   }
 
   ink(pen, path) {
