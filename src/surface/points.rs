@@ -19,7 +19,7 @@ pub struct ScatteredPoints {
     pub n_without_height: usize,
 }
 
-/// What becomes of points with the same x and y but different heights.
+/// How points with the same x and y but different heights are merged.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Duplicates {
     /// They are an error.

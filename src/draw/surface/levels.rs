@@ -11,7 +11,7 @@ const DEFAULT_INDEX_EVERY: u16 = 5;
 /// About this many levels are drawn if only a round step is wanted.
 const LEVELS_WANTED: f64 = 12.0;
 
-/// Steps are told from rounding down to this many decimals.
+/// Heights of levels are written with at most this many decimals: beyond that, digits are rounding.
 const MOST_DECIMALS: usize = 9;
 
 /// A level curve's height.

@@ -45,7 +45,7 @@ pub struct Jet {
     pub first: Interval,
     /// The second derivatives, in class [`Class::Smooth`].
     pub second: Interval,
-    /// What holds.
+    /// How smooth the function is, and so which of these enclosures are valid.
     pub class: Class,
 }
 

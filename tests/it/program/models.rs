@@ -304,7 +304,7 @@ fn units_of_files_set_the_scale_unless_unit_is_given() {
         let (of_glb, ..) = width(&["a.glb", "--drawing-scale", "1:1", "--unit", unit]);
         assert!(close(of_obj, of_glb), "{unit}");
     }
-    // Files of different units are brought to that of the first, and this is told.
+    // Files in other units are converted to the unit of the first one, with a message.
     let (both, stderr) = width(&["in.3mf", "small.glb", "--drawing-scale", "1:1"]);
     assert!(close(both, 4.2 * 25.4 - 0.001 * 1000.0), "{both}");
     assert!(stderr.contains("small.glb is in units of 1000 mm and was scaled by"), "{stderr}");

@@ -1,4 +1,4 @@
-//! Faces as polygons: the engines that clip and divide the image, and what becomes of their regions.
+//! Faces as polygons: the engines that clip and divide the image, and how their regions are filled.
 
 mod borders;
 mod colors;

@@ -223,7 +223,7 @@ fn what_the_page_asks_for_is_in_the_command_and_on_the_paper() {
     let viewer = Viewer::start(&["cube.obj", "--margin", "15", "--landscape"]);
     let asked = json!({ "margin": "20", "pen": ["visible=3:0.7mm:red"], "hidden": "solid", "crease": "30" });
     let facts = viewer.draw(&exact(asked)).facts();
-    // What holds anyway is left out, and so is what the page has turned off.
+    // Defaults are left out, and so is what the page has turned off.
     let expected =
         "hiddenline draw cube.obj --hidden=solid --margin=20 --pen=visible=3:0.7mm:red -o cube.svg";
     assert_eq!(facts["command"], json!(expected));

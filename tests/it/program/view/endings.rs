@@ -65,7 +65,7 @@ fn with_watch_a_changed_model_is_drawn_anew() {
     let after = strokes(&viewer);
     assert_ne!(before, after);
     assert_eq!(after.concat().len(), 4, "one triangle");
-    // A file that is broken for a while is told, and drawn when it is mended.
+    // A broken file is reported, and drawn once it is repaired.
     fs::write(viewer.path().join("cube.obj"), "v 0 0 0\nf 1 2 9\n").unwrap();
     assert_eq!(events.next().unwrap(), json!({ "event": "changed" }));
     assert!(viewer.draw(&asked).json()["error"].as_str().unwrap().contains("cube.obj:2"));

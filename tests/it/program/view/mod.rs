@@ -29,7 +29,7 @@ pub(crate) struct Viewer {
     token: String,
 }
 
-/// An answer as it came.
+/// A raw HTTP response.
 pub(crate) struct Reply {
     status: u16,
     head: String,
