@@ -215,13 +215,15 @@ pub use model::scene::Scene;
 pub use read::{ModelFormat, Warning};
 
 // A surface.
-pub use axes::{Axes, AxesStyle, BoxFront, TickRule, Titles, ZAxis};
+pub use axes::{Axes, AxesStyle, BoxFront, LegendPlace, TickRule, Titles, ZAxis};
 pub use draw::surface::{
-    Certificate, LabelSide, Labels, Levels, SurfaceEngine, SurfaceLines, SurfaceNote,
+    Certificate, LabelSide, Labels, Legend, Levels, SurfaceEngine, SurfaceLines, SurfaceNote,
 };
 pub use engines::surface::CellOrder;
-pub use surface::formula::Formula;
-pub use surface::{Aspect, Grid, HeightField, HeightOptions, SampledSurface, Surface};
+pub use surface::formula::{Formula, Parameter, ParameterList};
+pub use surface::{
+    Aspect, FormulaSheet, Grid, HeightField, HeightOptions, SampledSurface, Surface,
+};
 
 // A view of it.
 pub use camera::Camera;
@@ -258,7 +260,7 @@ pub mod errors {
     pub use crate::shading::fill::FillError;
     #[cfg(feature = "points")]
     pub use crate::surface::PointsError;
-    pub use crate::surface::formula::FormulaError;
-    pub use crate::surface::{GridError, HeightError};
+    pub use crate::surface::formula::{FormulaError, ParameterError};
+    pub use crate::surface::{FamilyError, GridError, HeightError};
     pub use crate::write::WriteError;
 }

@@ -32,9 +32,9 @@ pub enum StrokeKind {
     Level,
     /// A level curve that is drawn heavier, such as every fifth.
     Index,
-    /// An axis, its ticks, or the base box.
+    /// An axis or its ticks.
     Axis,
-    /// Lettering.
+    /// The numbers of an axis, or the words of a legend.
     Text,
     /// Shading.
     Hatch,
@@ -44,6 +44,14 @@ pub enum StrokeKind {
     Label,
     /// Where a range of heights cuts a surface off.
     Cut,
+    /// A level curve drawn on the base of the box around a surface.
+    LevelBase,
+    /// An edge of that box that is no axis.
+    Box,
+    /// The grid and the edges of the box's faces behind the surface.
+    Back,
+    /// The title of an axis, or of the drawing.
+    Title,
 }
 
 /// Which part of a surface a line is of.
@@ -81,7 +89,7 @@ impl GridFamily {
 
 impl StrokeKind {
     /// All kinds.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 21] = [
         Self::Silhouette,
         Self::Crease,
         Self::Boundary,
@@ -99,6 +107,10 @@ impl StrokeKind {
         Self::Shadow,
         Self::Label,
         Self::Cut,
+        Self::LevelBase,
+        Self::Box,
+        Self::Back,
+        Self::Title,
     ];
 
     /// The name used on the command line and in files.
@@ -121,6 +133,10 @@ impl StrokeKind {
             Self::Shadow => "shadow",
             Self::Label => "label",
             Self::Cut => "cut",
+            Self::LevelBase => "level-base",
+            Self::Box => "box",
+            Self::Back => "back",
+            Self::Title => "title",
         }
     }
 }

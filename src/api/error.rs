@@ -14,8 +14,8 @@ use crate::read::ReadError;
 use crate::shading::fill::FillError;
 #[cfg(feature = "points")]
 use crate::surface::PointsError;
-use crate::surface::formula::FormulaError;
-use crate::surface::{GridError, HeightError};
+use crate::surface::formula::{FormulaError, ParameterError};
+use crate::surface::{FamilyError, GridError, HeightError};
 use crate::write::WriteError;
 
 /// Why there is no drawing.
@@ -31,6 +31,12 @@ pub enum Error {
     /// A text is not a formula.
     #[error(transparent)]
     Formula(#[from] FormulaError),
+    /// A name or a value makes no parameter of formulas.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// There are no sheets for values of parameters.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
     /// The samples of a surface make no grid.
     #[error(transparent)]
     Grid(#[from] GridError),

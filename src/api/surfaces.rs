@@ -7,7 +7,9 @@ use super::{Error, Sheet};
 use crate::camera::framing::View;
 use crate::draw::surface::{SurfaceError, SurfaceLines, SurfaceOutput, draw_surface};
 use crate::model::scene::Scene;
-use crate::page::{Page, PageOptions, PenRule, PlotOptions, with_index_pen};
+use crate::page::{
+    Page, PageOptions, PenRule, PlotOptions, tells_sheets_apart, with_index_pen, with_sheet_pens,
+};
 use crate::strokes::Strokes;
 use crate::surface::{HeightField, HeightOptions, LatticeLines, Surface, read_heights};
 
@@ -108,7 +110,8 @@ impl SurfaceDrawing<'_> {
         self
     }
 
-    /// Which pens draw what; by default one pen draws everything.
+    /// Which pens draw what; by default one pen draws everything. Where there is a legend, or a rule for
+    /// some of the lines, each of several sheets has a pen of its own.
     pub fn pens(mut self, pens: impl IntoIterator<Item = PenRule>) -> Self {
         self.plot.pens = pens.into_iter().collect();
         self
@@ -120,15 +123,22 @@ impl SurfaceDrawing<'_> {
     /// The surface cannot be sampled or drawn as asked, the view makes no camera, or the drawing cannot
     /// be placed on the page.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
-        let tells_apart = self.plot.pens.iter().any(|rule| rule.drawn.tells_kinds_apart());
+        let mut plot = self.plot.clone();
+        let (n_sheets, has_legend) = (self.surface.n_sheets(), self.lines.legend.is_some());
+        if tells_sheets_apart(&plot.pens, n_sheets, has_legend) {
+            plot.pens = with_sheet_pens(plot.pens, n_sheets, plot.pen_width_mm);
+        }
+        let tells_apart = plot.pens.iter().any(|rule| rule.drawn.tells_kinds_apart());
         let apart_by_kind = self.lines.apart_by_kind || tells_apart;
         let mut lines = SurfaceLines { apart_by_kind, ..self.lines.clone() };
         if let Some(axes) = &mut lines.axes {
-            axes.pen_width_mm = self.plot.pen_width_mm;
+            axes.pen_width_mm = plot.pen_width_mm;
+        }
+        if let Some(legend) = &mut lines.legend {
+            (legend.pens, legend.pen_width_mm) = (plot.pens.clone(), plot.pen_width_mm);
         }
         let SurfaceOutput { drawn, page, notes, has_index_levels, .. } =
             draw_surface(self.surface, &self.view, &lines, &page.into())?;
-        let mut plot = self.plot.clone();
         if has_index_levels {
             plot.pens = with_index_pen(plot.pens, plot.pen_width_mm);
         }

@@ -266,8 +266,12 @@ impl AxisLine {
 impl LaidAxis {
     /// Its numbers, the power of ten they share, and its title.
     pub(super) fn texts(&self) -> impl Iterator<Item = &TextBlock> {
+        self.numbers().chain(&self.title)
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = &TextBlock> {
         let numbers = self.ticks.iter().filter_map(|tick| tick.number.as_ref());
-        numbers.chain(&self.exponent).chain(&self.title)
+        numbers.chain(&self.exponent)
     }
 
     /// Its ticks as ink.
@@ -284,7 +288,8 @@ impl LaidAxis {
         for minor in &self.minors {
             drawing.push(StrokeKind::Axis, 0, *minor);
         }
-        self.texts().for_each(|text| text.draw(drawing));
+        self.numbers().for_each(|text| text.draw(StrokeKind::Text, drawing));
+        self.title.iter().for_each(|title| title.draw(StrokeKind::Title, drawing));
     }
 }
 

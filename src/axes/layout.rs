@@ -102,13 +102,21 @@ pub struct AxesSize {
     pub economy: Economy,
 }
 
+impl AxesSize {
+    /// Height of numbers in the image.
+    pub fn text(&self) -> f64 {
+        let smaller = if self.economy >= Economy::Smaller { SMALLER } else { 1.0 };
+        smaller * self.text_mm / self.mm_per_unit
+    }
+}
+
 /// Axes laid out for an image.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct AxesLayout {
     pub(super) axes: Vec<LaidAxis>,
     pub(super) title: Option<TextBlock>,
     /// Solid or dashed lines that nothing hides.
-    lines: Vec<[DVec2; 2]>,
+    lines: Vec<(StrokeKind, [DVec2; 2])>,
     /// The image of the box.
     pub(super) hull: Vec<DVec2>,
     wires: Vec<Wire>,
@@ -119,9 +127,7 @@ impl AxesLayout {
     /// Lays axes out around a box. `None` if a corner of the box is in front of the near plane, or the box
     /// has no extent in the image.
     pub fn new(around: &AxesBox, camera: &Camera, axes: &Axes, size: &AxesSize) -> Option<Self> {
-        let smaller = if size.economy >= Economy::Smaller { SMALLER } else { 1.0 };
-        let sizes =
-            Sizes { text: smaller * size.text_mm / size.mm_per_unit, mm: 1.0 / size.mm_per_unit };
+        let sizes = Sizes { text: size.text(), mm: 1.0 / size.mm_per_unit };
         let is_map = is_straight_down(camera);
         let style = axes.style.unwrap_or(if is_map { AxesStyle::Frame } else { AxesStyle::Edges });
         let economy = size.economy;
@@ -150,12 +156,12 @@ impl AxesLayout {
     /// The strokes that nothing hides.
     pub fn strokes(&self) -> Strokes {
         let mut drawing = Strokes::default();
-        for line in &self.lines {
-            drawing.push(StrokeKind::Axis, 0, *line);
+        for (kind, line) in &self.lines {
+            drawing.push(*kind, 0, *line);
         }
         self.axes.iter().for_each(|axis| axis.draw(&mut drawing));
         if let Some(title) = &self.title {
-            title.draw(&mut drawing);
+            title.draw(StrokeKind::Title, &mut drawing);
         }
         drawing
     }
@@ -336,10 +342,10 @@ impl Layouter<'_> {
         let edges = || (0..3).flat_map(|axis| bbox.edges(axis));
         let is_outline = |edge: &_| bbox.place(edge) == EdgePlace::Outline;
         // Axes are drawn already.
-        let solid = |lines: &mut Vec<[DVec2; 2]>, edge: &_| {
+        let solid = |lines: &mut Vec<(StrokeKind, [DVec2; 2])>, kind, edge: &_| {
             let ends = bbox.image_of(edge);
             if !axes.contains(&ends) && ends[0] != ends[1] {
-                lines.push(ends);
+                lines.push((kind, ends));
             }
         };
         match self.style {
@@ -350,28 +356,34 @@ impl Layouter<'_> {
                     |edge: &super::bounding_box::BoxEdge| edge.axis < 2 && edge.sides[2] == is_high;
                 edges()
                     .filter(|e| is_base(e) && is_outline(e))
-                    .for_each(|e| solid(&mut layout.lines, &e));
+                    .for_each(|e| solid(&mut layout.lines, StrokeKind::Box, &e));
                 let is_hidden = |e: &super::bounding_box::BoxEdge| {
                     is_base(e) && walls::is_between_walls(bbox, e)
                 };
-                layout.wires = walls::edges(bbox, is_hidden);
+                layout.wires = walls::edges(bbox, StrokeKind::Box, is_hidden);
                 layout.wires.extend(self.base_ticks(chosen, is_high));
             }
             AxesStyle::Back | AxesStyle::Box => {
                 layout.wires = walls::grid(bbox, chosen, &self.around.scales);
-                layout.wires.extend(walls::edges(bbox, |e| walls::is_between_walls(bbox, e)));
+                let is_behind = |e: &_| walls::is_between_walls(bbox, e);
+                layout.wires.extend(walls::edges(bbox, StrokeKind::Back, is_behind));
                 let is_box = self.style == AxesStyle::Box;
-                edges()
-                    .filter(|e| is_outline(e) && (is_box || walls::is_beside_wall(bbox, e)))
-                    .for_each(|e| solid(&mut layout.lines, &e));
+                for edge in edges().filter(is_outline) {
+                    match walls::is_beside_wall(bbox, &edge) {
+                        true => solid(&mut layout.lines, StrokeKind::Back, &edge),
+                        false if is_box => solid(&mut layout.lines, StrokeKind::Box, &edge),
+                        false => {}
+                    }
+                }
                 if is_box && self.axes.box_front != BoxFront::None {
                     for edge in edges().filter(|e| bbox.place(e) == EdgePlace::Front) {
                         let ends = bbox.image_of(&edge);
                         match self.axes.box_front {
                             BoxFront::Dashed => {
-                                layout.lines.extend(dashes(ends, DASH_MM * self.sizes.mm));
+                                let dashes = dashes(ends, DASH_MM * self.sizes.mm).into_iter();
+                                layout.lines.extend(dashes.map(|dash| (StrokeKind::Box, dash)));
                             }
-                            _ => solid(&mut layout.lines, &edge),
+                            _ => solid(&mut layout.lines, StrokeKind::Box, &edge),
                         }
                     }
                 }
@@ -383,7 +395,7 @@ impl Layouter<'_> {
                     if axes.contains(&ends) {
                         continue;
                     }
-                    solid(&mut layout.lines, &edge);
+                    solid(&mut layout.lines, StrokeKind::Axis, &edge);
                     let opposite = layout.axes.iter().find(|axis| axis.axis == edge.axis);
                     let Some(opposite) = opposite else { continue };
                     let shift = ends[0] - opposite.ends[0];
@@ -391,7 +403,7 @@ impl Layouter<'_> {
                         |[foot, tip]: [DVec2; 2]| [foot + shift, foot + shift - (tip - foot)];
                     let ticks = opposite.ticks.iter().map(|tick| [tick.foot, tick.tip]);
                     let ticks = ticks.chain(opposite.minors.iter().copied()).map(across);
-                    layout.lines.extend(ticks);
+                    layout.lines.extend(ticks.map(|tick| (StrokeKind::Axis, tick)));
                 }
             }
         }

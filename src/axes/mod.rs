@@ -13,6 +13,7 @@ mod bounding_box;
 mod font;
 mod glyphs;
 mod layout;
+mod legend;
 mod letters;
 mod options;
 mod script;
@@ -22,6 +23,7 @@ mod walls;
 
 pub use self::font::{missing, text};
 pub use self::layout::{AxesBox, AxesLayout, AxesSize, Economy, is_straight_down};
+pub use self::legend::{LegendEntry, LegendPlace, legend};
 pub use self::options::{Axes, AxesStyle, BoxFront, Titles, ZAxis};
 pub use self::ticks::TickRule;
 pub use self::walls::Wire;

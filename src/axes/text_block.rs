@@ -33,7 +33,7 @@ impl TextBlock {
         let mut block = Self { lines, height, along, anchor: DVec2::ZERO, ink: Default::default() };
         let level = Self { along: DVec2::X, ..block.clone() };
         let mut strokes = Strokes::default();
-        level.draw(&mut strokes);
+        level.draw(StrokeKind::Text, &mut strokes);
         block.ink = strokes.bounds().unwrap_or_default();
         block
     }
@@ -64,8 +64,8 @@ impl TextBlock {
         gap >= clearance || gap >= 0.0 && distance(&corners, polygon) >= clearance
     }
 
-    /// Draws it.
-    pub(super) fn draw(&self, drawing: &mut Strokes) {
+    /// Draws it as strokes of a kind.
+    pub(super) fn draw(&self, kind: StrokeKind, drawing: &mut Strokes) {
         let across = self.along.perp();
         let middle = (self.lines.len() as f64 - 1.0) / 2.0;
         for (k, line) in self.lines.iter().enumerate() {
@@ -75,7 +75,7 @@ impl TextBlock {
             let corner = center - self.along * (width / 2.0) - across * (self.height / 2.0);
             for stroke in strokes {
                 let points = stroke.into_iter().map(|p| corner + self.along * p.x + across * p.y);
-                drawing.push(StrokeKind::Text, 0, points);
+                drawing.push(kind, 0, points);
             }
         }
     }
@@ -196,7 +196,7 @@ mod tests {
         assert!(!text.is_clear_of(&through, 0.0));
         // All of its ink is within its box.
         let mut drawn = Strokes::default();
-        text.draw(&mut drawn);
+        text.draw(StrokeKind::Text, &mut drawn);
         for p in drawn.iter().flat_map(|stroke| stroke.points) {
             for (direction, reach) in
                 [dvec2(0.6, 0.8), dvec2(-0.8, 0.6), dvec2(-0.6, -0.8), dvec2(0.8, -0.6)]

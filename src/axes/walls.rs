@@ -54,7 +54,7 @@ pub(super) fn grid(
                         p
                     };
                     let ends = [end(false), end(true)];
-                    wires.push(Wire { ends, kind: StrokeKind::Axis });
+                    wires.push(Wire { ends, kind: StrokeKind::Back });
                 }
             }
         }
@@ -63,9 +63,13 @@ pub(super) fn grid(
 }
 
 /// Edges of the box as wires.
-pub(super) fn edges(bbox: &BoundingBox, is_wanted: impl Fn(&BoxEdge) -> bool) -> Vec<Wire> {
+pub(super) fn edges(
+    bbox: &BoundingBox,
+    kind: StrokeKind,
+    is_wanted: impl Fn(&BoxEdge) -> bool,
+) -> Vec<Wire> {
     let edges = (0..3).flat_map(|axis| bbox.edges(axis)).filter(is_wanted);
-    edges.map(|edge| Wire { ends: bbox.ends(&edge), kind: StrokeKind::Axis }).collect()
+    edges.map(|edge| Wire { ends: bbox.ends(&edge), kind }).collect()
 }
 
 /// Whether an edge is between two faces behind the surface.

@@ -9,7 +9,7 @@ use clap::Args;
 use hiddenline::stages::axes::{Axes, AxesBox};
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::classify::{DEFAULT_CREASE_DEG, LineSelection};
-use hiddenline::stages::draw::surface::surround;
+use hiddenline::stages::draw::surface::{Surroundings, surround};
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
 use hiddenline::stages::engines::face::{FaceEngine, FaceError, Prepared};
 use hiddenline::stages::extent::Extent;
@@ -293,7 +293,8 @@ impl Picture<'_> {
         let extent = self.frame.unwrap_or_else(|| scene.extent(camera));
         let around = match job.axes.as_ref().zip(self.bounds.as_ref()) {
             Some((axes, bounds)) => {
-                let around = surround(bounds, extent, camera, Some(axes), page);
+                let wanted = Surroundings { axes: Some(axes), legend: None };
+                let around = surround(bounds, extent, camera, wanted, page);
                 let (around, _, page) = around.map_err(|error| axes_error(&error))?;
                 run.notes.warnings.extend(around.notes.iter().map(noted));
                 Some((around, page))

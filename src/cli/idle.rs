@@ -81,6 +81,28 @@ const RULES: &[Rule] = &[
         is_idle: |c| c.is_given("grid") || c.is_given("points"),
         reason: "on samples from a file; it is for formulas",
     },
+    Rule { option: "labels", commands: &["surface"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "label-side", commands: &["surface"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "negative", commands: &["surface"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "legend", commands: &["surface"], is_idle: is_exact, reason: EXACT },
+    Rule {
+        option: "label-side",
+        commands: &["surface"],
+        is_idle: |c| !c.has("lines", &["levels"]),
+        reason: "without levels among --lines",
+    },
+    Rule {
+        option: "label-side",
+        commands: &["surface"],
+        is_idle: has_no_labels,
+        reason: "without labels; --labels all draws them",
+    },
+    Rule {
+        option: "names",
+        commands: &["surface"],
+        is_idle: |c| !c.is_present("legend") || c.has("legend", &["none"]),
+        reason: "without --legend",
+    },
     Rule { option: "u", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule { option: "v", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule {
@@ -211,6 +233,12 @@ fn is_exact(choices: &Choices) -> bool {
 
 fn has_no_axes(choices: &Choices) -> bool {
     is_exact(choices) || choices.is_set("no-axes") || choices.has("axes", &["none"])
+}
+
+/// Level curves have no labels unless these are asked for, but in views from above without grid lines.
+fn has_no_labels(choices: &Choices) -> bool {
+    let has_grid_lines = choices.has("lines", &["x", "y", "both"]);
+    choices.has("labels", &["none"]) || !choices.is_present("labels") && has_grid_lines
 }
 
 fn is_frame(choices: &Choices) -> bool {

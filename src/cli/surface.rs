@@ -4,6 +4,7 @@ mod args;
 mod axes_args;
 mod input;
 mod input_args;
+mod legend_args;
 #[cfg(feature = "view")]
 mod live;
 
@@ -174,7 +175,8 @@ fn without_levels(none: &NoLevels) -> String {
 }
 
 fn plot_options(job: &Job, has_index: bool) -> PlotOptions {
-    let pens = job.output.plotting.pens(job.pen_width_mm);
+    let has_legend = job.lines.legend.is_some();
+    let pens = job.sheets.pens(&job.output.plotting, job.pen_width_mm, has_legend);
     let pens = if job.lines.underside { with_underside_pen(pens, job.pen_width_mm) } else { pens };
     let pens = if has_index { with_index_pen(pens, job.pen_width_mm) } else { pens };
     let pens = if job.hatch.is_some() { with_hatch_pen(pens, job.pen_width_mm) } else { pens };

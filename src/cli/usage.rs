@@ -6,7 +6,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, Command, CommandFactory};
 
 use super::Cli;
-use super::values::ROUND_STEP;
+use super::values::{ROUND_STEP, USUAL_PLACE};
 
 /// Options of other programs for the size of a picture.
 const SIZES: [&str; 5] = ["--width", "--height", "--size", "--resolution", "--pixels"];
@@ -34,7 +34,7 @@ pub(super) fn command() -> Command {
 }
 
 /// What was typed for `surface`, in a form that clap takes: formulas may begin with a minus wherever they
-/// stand, and `--levels` needs no value.
+/// stand, and `--levels` and `--legend` need no value.
 pub(super) fn spelled_out(program: &Command, mut typed: Vec<OsString>) -> Vec<OsString> {
     let is_command = |word: &OsString| word == "surface";
     let (Some(first), Some(command)) =
@@ -60,6 +60,11 @@ pub(super) fn spelled_out(program: &Command, mut typed: Vec<OsString>) -> Vec<Os
         known.is_some_and(|arg| word.len() == 2 || arg.get_action().takes_values())
             || ["-h", "-V"].contains(&word)
     };
+    let is_place = |word: &str| {
+        let legend = command.get_arguments().find(|arg| arg.get_id() == "legend");
+        let places = legend.map(clap::Arg::get_possible_values).unwrap_or_default();
+        places.iter().any(|place| place.matches(word, false))
+    };
     for k in first + 1..typed.len() {
         let words = [k.checked_sub(1), Some(k), Some(k + 1)].map(|k| {
             k.and_then(|k| typed.get(k)).and_then(|word| word.to_str()).map(str::to_owned)
@@ -72,9 +77,11 @@ pub(super) fn spelled_out(program: &Command, mut typed: Vec<OsString>) -> Vec<Os
         if word == "--" {
             break;
         }
-        let is_alone = after.is_none_or(|word| word.starts_with("--") || is_short(&word));
+        let is_alone = after.as_deref().is_none_or(|word| word.starts_with("--") || is_short(word));
         if word == "--levels" && is_alone {
             typed[k] = format!("--levels={ROUND_STEP}").into();
+        } else if word == "--legend" && !after.as_deref().is_some_and(is_place) {
+            typed[k] = format!("--legend={USUAL_PLACE}").into();
         } else if word.starts_with('-')
             && word.len() > 1
             && !word.starts_with("--")

@@ -18,6 +18,27 @@ use super::suggestion::suggestion;
 /// What `--levels` stands for without a value.
 pub(super) const ROUND_STEP: &str = "round";
 
+/// What `--legend` stands for without a value.
+pub(super) const USUAL_PLACE: &str = "right";
+
+/// Texts with commas between them; `\,` is a comma in a text.
+pub(super) fn with_commas(text: &str) -> Vec<String> {
+    let mut texts = vec![String::new()];
+    let mut characters = text.chars().peekable();
+    while let Some(character) = characters.next() {
+        let last = texts.len() - 1;
+        match character {
+            '\\' if characters.peek() == Some(&',') => {
+                characters.next();
+                texts[last].push(',');
+            }
+            ',' => texts.push(String::new()),
+            _ => texts[last].push(character),
+        }
+    }
+    texts
+}
+
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse::<f64>().map_err(|_| "not a number".to_owned())?;

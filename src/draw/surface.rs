@@ -16,23 +16,25 @@ mod dashes;
 mod error;
 mod grid;
 mod labels;
+mod legend;
 mod levels;
 mod options;
 mod smoothness;
 
 use glam::DVec2;
 
-pub use self::around::{Around, axes_box, surround};
+pub use self::around::{Around, Surroundings, axes_box, surround};
 pub use self::certificate::Certificate;
 pub use self::error::{MAX_TRIANGLES, NoLevels, SurfaceError, SurfaceNote};
 pub use self::options::{
-    DEFAULT_LABEL_HEIGHT_MM, DEFAULT_SMOOTHNESS_MM, LabelSide, Labels, Levels, SurfaceEngine,
-    SurfaceLines,
+    DEFAULT_LABEL_HEIGHT_MM, DEFAULT_SMOOTHNESS_MM, LabelSide, Labels, Legend, Levels,
+    SurfaceEngine, SurfaceLines,
 };
 
 use self::dashes::dash_negative;
 use self::grid::{draw_grid, grid_to_draw};
 use self::labels::{Labelling, label};
+use self::legend::LegendText;
 use self::levels::LevelSet;
 use self::smoothness::{SmoothSurface, sample};
 use super::turning::{TurningLines, surface_turning_lines};
@@ -45,7 +47,7 @@ use crate::engines::surface::max_min;
 use crate::extent::Extent;
 use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions};
-use crate::strokes::Strokes;
+use crate::strokes::{Stroke, Strokes};
 use crate::surface::{AxisScale, LatticeLines, LinedScene, SampledSurface, Surface};
 use crate::timing::{Seconds, timed};
 
@@ -124,6 +126,7 @@ pub fn draw_surface(
     page: &PageOptions,
 ) -> Result<SurfaceOutput, SurfaceError> {
     let mut seconds = Seconds::default();
+    let names = surface.sheet_names();
     let SmoothSurface { surface, camera, certificate, heights } =
         timed(&mut seconds.read, || sample(surface, view, lines, page))?;
     let mut notes = Vec::new();
@@ -160,8 +163,13 @@ pub fn draw_surface(
         Some(lined) => lined.scene.extent(&camera),
         None => surface.extent(&camera),
     };
-    let (around, extent, page) =
-        surround(&axes_box(&surface), extent, &camera, lines.axes.as_ref(), page)?;
+    let legend = lines.legend.as_ref();
+    let legend = legend.map(|legend| LegendText::new(legend, &names, &surface, lines, &levels));
+    let wanted = Surroundings { axes: lines.axes.as_ref(), legend: legend.as_ref() };
+    let (around, extent, page) = surround(&axes_box(&surface), extent, &camera, wanted, page)?;
+    if let Some(n) = legend.as_ref().map(|legend| legend.n_alike).filter(|n| *n > 0) {
+        notes.push(SurfaceNote::SheetsAlike(n));
+    }
     notes.extend(around.notes.iter().cloned());
     let mut visible_wires = None;
     let (mut drawn, size) = match (grid, &lined) {
@@ -198,6 +206,12 @@ pub fn draw_surface(
     }
     if lines.negative_dashed && !lines.exact {
         *drawing = dash_negative(drawing, &levels, page.mm_per_image_unit());
+    }
+    if let Some(legend) = &legend {
+        let is_dashed =
+            |stroke: &Stroke| lines.negative_dashed && levels.is_negative(stroke.part.level);
+        let whole = std::mem::take(drawing);
+        *drawing = legend.dashed(whole, is_dashed, page.mm_per_image_unit());
     }
     let scene = match lined {
         Some(lined) => Some(lined.scene),
@@ -341,7 +355,10 @@ pub fn for_turning(
     let sampled = surface.sample()?;
     let levels = LevelSet::new(lines, &sampled)?;
     let lined = lined(&sampled, lines, &levels)?;
-    Ok(TurningSurface { lined, sampled, has_index_levels: levels.has_index() })
+    let legend = lines.legend.as_ref();
+    let names = surface.sheet_names();
+    let legend = legend.map(|legend| LegendText::new(legend, &names, &sampled, lines, &levels));
+    Ok(TurningSurface { lined, sampled, legend, has_index_levels: levels.has_index() })
 }
 
 /// A surface made ready to be turned.
@@ -349,6 +366,7 @@ pub fn for_turning(
 pub struct TurningSurface {
     lined: LinedScene,
     sampled: SampledSurface,
+    legend: Option<LegendText>,
     has_index_levels: bool,
 }
 
@@ -377,8 +395,8 @@ impl TurningSurface {
         let mut visible = surface_turning_lines(&self.lined, &camera, &meshed_options(lines));
         let scene = &self.lined.scene;
         let extent = scene.extent(&camera);
-        let axes = lines.axes.as_ref();
-        let (around, _, page) = surround(&axes_box(&self.sampled), extent, &camera, axes, page)?;
+        let wanted = Surroundings { axes: lines.axes.as_ref(), legend: self.legend.as_ref() };
+        let (around, _, page) = surround(&axes_box(&self.sampled), extent, &camera, wanted, page)?;
         visible.push_pane(&around.with_wires(scene, &camera), &camera);
         Ok((visible, camera, page))
     }

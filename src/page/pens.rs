@@ -188,6 +188,16 @@ pub fn default_pen_color(number: u32) -> &'static str {
     PALETTE[number.saturating_sub(1) as usize % PALETTE.len()]
 }
 
+/// The pen of a visible stroke; one of width `width_mm` where there is no rule for it.
+pub fn pen_of(rules: &[PenRule], width_mm: f64, stroke: &Stroke) -> Pen {
+    let ruled = |drawn| rules.iter().rev().find(|rule| rule.drawn == drawn);
+    let role = PenRole::of(stroke, |role| ruled(role).is_some());
+    let usual = || Pen { width_mm, ..Pen::default() };
+    // Rules about one pen say what it is like by the first of them.
+    let first = |number| rules.iter().find(|rule| rule.number == number);
+    ruled(role).and_then(|rule| first(rule.number)).map_or_else(usual, |rule| rule.pen.clone())
+}
+
 /// Those of `roles` that draw none of `strokes`, because there are none of that kind or because
 /// others of `roles` are more special.
 pub fn idle_pens(roles: &[PenRole], strokes: &Strokes) -> Vec<PenRole> {
@@ -277,6 +287,44 @@ pub fn with_index_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
     let color = of_levels.and(pen).map_or(INDEX_COLOR.to_owned(), |pen| pen.color);
     add_pen(&mut rules, PenRole::Kind(StrokeKind::Index), width_mm, color);
     rules
+}
+
+/// Adds a pen for each of several sheets to `rules`, unless these have one: that of the visible lines for
+/// the first sheet, and others as wide in the colors of their numbers.
+pub fn with_sheet_pens(mut rules: Vec<PenRule>, n_sheets: usize, width_mm: f64) -> Vec<PenRule> {
+    let n_sheets = u16::try_from(n_sheets).unwrap_or(u16::MAX);
+    if n_sheets < 2 {
+        return rules;
+    }
+    let free = |rules: &[PenRule], from: u32| {
+        let is_free = |number: &u32| rules.iter().all(|rule| rule.number != *number);
+        (from..).find(is_free).unwrap_or(from)
+    };
+    let visible = rules.iter().rev().find(|rule| rule.drawn == PenRole::Visible).cloned();
+    let visible = visible.unwrap_or_else(|| {
+        let number = free(&rules, 1);
+        let rule = PenRule::new(PenRole::Visible, number).width_mm(width_mm).color("#000000");
+        rules.push(rule.clone());
+        rule
+    });
+    for sheet in 1..=n_sheets {
+        let drawn = PenRole::Sheet(sheet);
+        if rules.iter().any(|rule| rule.drawn == drawn) {
+            continue;
+        }
+        rules.push(if sheet == 1 {
+            PenRule { drawn, ..visible.clone() }
+        } else {
+            PenRule::new(drawn, free(&rules, sheet.into())).width_mm(visible.pen.width_mm)
+        });
+    }
+    rules
+}
+
+/// Whether several sheets have pens of their own: with a legend, or where pens are given for some lines.
+pub fn tells_sheets_apart(rules: &[PenRule], n_sheets: usize, has_legend: bool) -> bool {
+    let is_for_all = |role| matches!(role, PenRole::Visible | PenRole::Hidden);
+    n_sheets > 1 && (has_legend || rules.iter().any(|rule| !is_for_all(rule.drawn)))
 }
 
 /// Adds the usual pen of the underside of a surface to `rules`, unless these have one.

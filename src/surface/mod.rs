@@ -12,6 +12,7 @@ mod heights;
 mod lattice_extent;
 mod levels;
 mod lined_mesh;
+mod names;
 mod places;
 #[cfg(feature = "points")]
 mod points;
@@ -29,9 +30,10 @@ pub use height_function::HeightFunction;
 pub use heights::{HeightError, HeightField, HeightNote, HeightOptions, read_heights};
 pub use lattice_extent::lattice_extent;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
+pub use names::{name_of_values, typeset};
 pub use places::Places;
 #[cfg(feature = "points")]
 pub use points::{Duplicates, PointsError, ScatteredPoints, delaunay};
 pub use sampled::{Lattice, SampledSurface, SheetJets};
 pub use sampling_error::SamplingError;
-pub use source::{Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, Surface};
+pub use source::{Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, FamilyError, FormulaSheet, Surface};

@@ -50,7 +50,7 @@ impl Surface {
         high: DVec3,
     ) -> [(f64, f64); 3] {
         let asked = match &self.source {
-            Source::Formulas { .. } => [Some(self.x), Some(self.y), None],
+            Source::Formulas(_) => [Some(self.x), Some(self.y), None],
             Source::Grid(grid) => {
                 let ends = |values: &[f64]| Some((values[0], values[values.len() - 1]));
                 [ends(grid.xs()), ends(grid.ys()), None]

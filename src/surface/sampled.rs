@@ -14,7 +14,7 @@ use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
 use super::places::Places;
 use super::proportions::{check_positive, mapped};
 use super::sampling_error::SamplingError;
-use super::source::{Source, Surface};
+use super::source::{FormulaSheet, Source, Surface};
 use crate::camera::Camera;
 use crate::extent::Extent;
 
@@ -114,7 +114,7 @@ impl Surface {
             true => f64::NEG_INFINITY,
             false => scale.drawn(z),
         };
-        let is_formula = matches!(self.source, Source::Formulas { .. });
+        let is_formula = matches!(self.source, Source::Formulas(_));
         self.z.filter(|_| is_formula).map(|(low, high)| (drawn(low), drawn(high)))
     }
 
@@ -124,7 +124,7 @@ impl Surface {
     /// A range that does not increase or has no logarithm, too few or too many samples.
     pub(crate) fn places(&self) -> Result<Option<Places>, SamplingError> {
         match &self.source {
-            Source::Formulas { .. } => {
+            Source::Formulas(_) => {
                 let [x, y] = self.drawn_ranges()?;
                 check_size(self.samples.0, self.samples.1)?;
                 check_ranges(x, y)?;
@@ -143,8 +143,9 @@ impl Surface {
     pub(crate) fn jets(&self) -> Vec<SheetJets> {
         let scales = self.own_scales();
         match &self.source {
-            Source::Formulas { formulas, .. } => {
-                formulas.iter().map(|z| SheetJets::Height(z.jets().scaled(scales))).collect()
+            Source::Formulas(sheets) => {
+                let jets = |sheet: &FormulaSheet| sheet.height.jets().scaled(scales);
+                sheets.iter().map(|sheet| SheetJets::Height(jets(sheet))).collect()
             }
             Source::Parametric { formulas, .. } => {
                 let data = AxisScale::DATA;
@@ -168,9 +169,11 @@ impl Surface {
         let scales = self.own_scales();
         let mut n_not_positive = 0;
         let sheets = match &self.source {
-            Source::Formulas { formulas, domain: None } => self.everywhere(formulas, &on)?,
-            Source::Formulas { formulas, domain: Some(domain) } => {
-                let grids = self.trimmed(formulas, Some(domain), &on)?;
+            Source::Formulas(sheets) if sheets.iter().all(|sheet| sheet.domain.is_none()) => {
+                self.everywhere(sheets, &on)?
+            }
+            Source::Formulas(sheets) => {
+                let grids = self.trimmed(sheets, &on)?;
                 if grids.iter().all(TrimmedGrid::is_whole) {
                     Samples::Grids(grids.iter().map(|g| g.grid().clone()).collect())
                 } else {
@@ -223,19 +226,19 @@ impl Surface {
         heights: Option<(f64, f64)>,
         closes: f64,
     ) -> Result<SampledSurface, SamplingError> {
-        let Source::Formulas { formulas, domain } = &self.source else {
+        let Source::Formulas(sheets) = &self.source else {
             // Those of a sampled surface, which were turned with it.
             let is_turned = matches!(self.source, Source::Parametric { .. }) && self.is_turned();
             return self.sample_at(Some(if is_turned { places.turned() } else { places }));
         };
-        let domain = domain.as_ref().map(|domain| self.domain_function(domain));
-        let cutting = Cutting { domain: domain.as_ref(), heights, closes };
-        let sample = |formula: &Formula| {
+        let sample = |FormulaSheet { height, domain }: &FormulaSheet| {
+            let domain = domain.as_ref().map(|domain| self.domain_function(domain));
+            let cutting = Cutting { domain: domain.as_ref(), heights, closes };
             let [xs, ys] = [Axis::First, Axis::Second].map(|axis| places.along(axis).to_vec());
-            let jets = formula.jets().scaled(self.own_scales());
-            TrimmedGrid::sample_torn(&self.function(formula), jets, &cutting, xs, ys)
+            let jets = height.jets().scaled(self.own_scales());
+            TrimmedGrid::sample_torn(&self.function(height), jets, &cutting, xs, ys)
         };
-        let grids = formulas.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
+        let grids = sheets.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         let sheets = if grids.iter().all(TrimmedGrid::is_whole) {
             Samples::Grids(grids.iter().map(|g| g.grid().clone()).collect())
         } else {
@@ -253,7 +256,7 @@ impl Surface {
     ) -> Result<SampledSurface, SamplingError> {
         let scales = self.own_scales();
         let formulas = match &self.source {
-            Source::Formulas { formulas, .. } => formulas.clone(),
+            Source::Formulas(sheets) => sheets.iter().map(|s| s.height.clone()).collect(),
             _ => Vec::new(),
         };
         let ranges = [(0.0, 0.0); 3];
@@ -306,16 +309,16 @@ impl Surface {
     /// Samples wherever their formulas have values; two that end at the same rim are joined there.
     fn everywhere(
         &self,
-        formulas: &[Formula],
+        sheets: &[FormulaSheet],
         on: &impl Fn() -> (Vec<f64>, Vec<f64>),
     ) -> Result<Samples, SamplingError> {
-        let sample = |formula: &Formula| {
+        let sample = |sheet: &FormulaSheet| {
             let (xs, ys) = on();
-            Grid::sample_at(&self.function(formula), xs, ys)
+            Grid::sample_at(&self.function(&sheet.height), xs, ys)
         };
-        let grids = formulas.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
+        let grids = sheets.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         if grids.len() == 2 && grids.iter().any(|grid| grid.holes() != Holes::None) {
-            let trimmed = self.trimmed(formulas, None, on)?;
+            let trimmed = self.trimmed(sheets, on)?;
             if let [one, other] = &trimmed[..]
                 && one.shares_rim(other, rim_tolerance(&trimmed))
             {
@@ -327,16 +330,15 @@ impl Surface {
 
     fn trimmed(
         &self,
-        formulas: &[Formula],
-        domain: Option<&Formula>,
+        sheets: &[FormulaSheet],
         on: &impl Fn() -> (Vec<f64>, Vec<f64>),
     ) -> Result<Vec<TrimmedGrid>, SamplingError> {
-        let domain = domain.map(|domain| self.domain_function(domain));
-        let sample = |formula: &Formula| {
+        let sample = |FormulaSheet { height, domain }: &FormulaSheet| {
             let (xs, ys) = on();
-            TrimmedGrid::sample_at(&self.function(formula), domain.as_ref(), xs, ys)
+            let domain = domain.as_ref().map(|domain| self.domain_function(domain));
+            TrimmedGrid::sample_at(&self.function(height), domain.as_ref(), xs, ys)
         };
-        Ok(formulas.iter().map(sample).collect::<Result<_, _>>()?)
+        Ok(sheets.iter().map(sample).collect::<Result<_, _>>()?)
     }
 
     fn domain_function(&self, domain: &Formula) -> HeightFunction {
@@ -350,10 +352,11 @@ impl Surface {
 
     /// Whether there is a domain, and samples have heights outside of it.
     fn has_heights_outside(&self) -> bool {
-        let Source::Formulas { formulas, domain: Some(_) } = &self.source else { return false };
+        let Source::Formulas(sheets) = &self.source else { return false };
         let Ok([x, y]) = self.drawn_ranges() else { return false };
         let sample = |f: &Formula| Grid::sample_function(&self.function(f), x, y, self.samples);
-        formulas.iter().any(|f| sample(f).is_ok_and(|grid| grid.heights().is_some()))
+        let of_domains = sheets.iter().filter(|sheet| sheet.domain.is_some());
+        of_domains.map(|s| sample(&s.height)).any(|g| g.is_ok_and(|g| g.heights().is_some()))
     }
 }
 

@@ -1,10 +1,12 @@
 //! Surfaces as they are described, before they are sampled.
 
 use glam::DVec3;
+use thiserror::Error;
 
-use super::formula::{Formula, FormulaError, Variables};
+use super::formula::{Formula, FormulaError, Parameter, ParameterError, ParameterList, Variables};
 use super::grid::{Grid, GridError, check_parameters, evenly};
 use super::lined_mesh::close_seams;
+use super::names::{name_of_values, typeset};
 #[cfg(feature = "points")]
 use super::points::{PointsError, delaunay};
 use crate::model::mesh::MeshError;
@@ -50,16 +52,14 @@ pub struct Surface {
     pub(super) log: [bool; 3],
     /// Whether x and y run the other way.
     pub(super) reversed: [bool; 2],
+    /// The names of the sheets, as far as they have any.
+    names: Vec<String>,
 }
 
 /// Where the points of a surface come from.
 #[derive(Debug, Clone)]
 pub(super) enum Source {
-    /// One sheet for each formula, all over the same domain; `None` is wherever they have values.
-    Formulas {
-        formulas: Vec<Formula>,
-        domain: Option<Formula>,
-    },
+    Formulas(Vec<FormulaSheet>),
     Grid(Grid),
     Triangles {
         points: Vec<DVec3>,
@@ -76,6 +76,26 @@ pub(super) enum Source {
         u: (f64, f64),
         v: (f64, f64),
     },
+}
+
+/// A sheet z = f(x, y).
+#[derive(Debug, Clone, PartialEq)]
+pub struct FormulaSheet {
+    /// z as a formula of x and y.
+    pub height: Formula,
+    /// Where the sheet is, as a formula of x and y that is true there; `None` is wherever it has a height.
+    pub domain: Option<Formula>,
+}
+
+/// Why there are no sheets for values of parameters.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FamilyError {
+    /// The text is not a formula.
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    /// The values cannot be combined.
+    #[error(transparent)]
+    Parameters(#[from] ParameterError),
 }
 
 /// How long the edges of the box around a surface are.
@@ -101,7 +121,36 @@ impl Surface {
 
     /// One sheet for each formula; their variables are x and y.
     pub fn formulas(formulas: Vec<Formula>) -> Self {
-        Self::new(Source::Formulas { formulas, domain: None }, Aspect::Box)
+        let sheet = |height| FormulaSheet { height, domain: None };
+        Self::sheets(formulas.into_iter().map(sheet).collect())
+    }
+
+    /// Sheets that each have a domain of their own.
+    pub fn sheets(sheets: Vec<FormulaSheet>) -> Self {
+        Self::new(Source::Formulas(sheets), Aspect::Box)
+    }
+
+    /// One sheet z = `text` for each combination of values of parameters, which are constants in the
+    /// formula.
+    ///
+    /// ```
+    /// use hiddenline::{ParameterList, Surface};
+    ///
+    /// let a = ParameterList::new("a", [1.0, 2.0, 3.0])?;
+    /// let bells = Surface::formula_for("a + exp(-a*r^2/2)", &[a])?.x(-3.0, 3.0).y(-3.0, 3.0);
+    /// assert_eq!(bells.sheet_names(), ["a = 1", "a = 2", "a = 3"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The text is not a formula, a name is in two lists, or there are too many combinations.
+    pub fn formula_for(text: &str, lists: &[ParameterList]) -> Result<Self, FamilyError> {
+        let combinations = ParameterList::combinations(lists)?;
+        let parse =
+            |parameters: &Vec<Parameter>| Formula::parse_with(text, Variables::Plane, parameters);
+        let formulas: Vec<Formula> = combinations.iter().map(parse).collect::<Result<_, _>>()?;
+        let names = combinations.iter().map(|parameters| name_of_values(parameters));
+        Ok(Self::formulas(formulas).names(names))
     }
 
     /// A grid of heights.
@@ -227,6 +276,7 @@ impl Surface {
             z_scale: 1.0,
             log: [false; 3],
             reversed: [false; 2],
+            names: Vec::new(),
         }
     }
 
@@ -236,8 +286,9 @@ impl Surface {
     /// The text is not a formula.
     pub fn sheet(mut self, text: &str) -> Result<Self, FormulaError> {
         let formula = Formula::parse(text, Variables::Plane)?;
-        if let Source::Formulas { formulas, .. } = &mut self.source {
-            formulas.push(formula);
+        if let Source::Formulas(sheets) = &mut self.source {
+            let domain = sheets.last().and_then(|sheet| sheet.domain.clone());
+            sheets.push(FormulaSheet { height: formula, domain });
         }
         Ok(self)
     }
@@ -253,8 +304,8 @@ impl Surface {
 
     /// As [`domain`](Self::domain), from a formula whose variables are x and y.
     pub fn within(mut self, formula: Formula) -> Self {
-        if let Source::Formulas { domain, .. } = &mut self.source {
-            *domain = Some(formula);
+        if let Source::Formulas(sheets) = &mut self.source {
+            sheets.iter_mut().for_each(|sheet| sheet.domain = Some(formula.clone()));
         }
         self
     }
@@ -326,11 +377,38 @@ impl Surface {
         self
     }
 
+    /// Names of the sheets, for a legend.
+    pub fn names<T: Into<String>>(mut self, names: impl IntoIterator<Item = T>) -> Self {
+        self.names = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// How many sheets there are; 1 for what is no formula.
+    pub fn n_sheets(&self) -> usize {
+        match &self.source {
+            Source::Formulas(sheets) => sheets.len(),
+            _ => 1,
+        }
+    }
+
+    /// The names of the sheets: those that were given, or else their formulas with mathematical signs. Empty
+    /// where there is neither.
+    pub fn sheet_names(&self) -> Vec<String> {
+        let formula = |k: usize| match &self.source {
+            Source::Formulas(sheets) => {
+                sheets.get(k).map_or(String::new(), |sheet| typeset(sheet.height.text()))
+            }
+            _ => String::new(),
+        };
+        let name = |k: usize| self.names.get(k).cloned().unwrap_or_else(|| formula(k));
+        (0..self.n_sheets()).map(name).collect()
+    }
+
     /// How many samples there are along each axis if formulas are sampled; `None` for what is given by
     /// points, which cannot be sampled more finely.
     pub fn samples_of_formulas(&self) -> Option<(usize, usize)> {
         match self.source {
-            Source::Formulas { .. } | Source::Parametric { .. } => Some(self.samples),
+            Source::Formulas(_) | Source::Parametric { .. } => Some(self.samples),
             Source::Grid(_) | Source::Triangles { .. } | Source::Lattice { .. } => None,
         }
     }

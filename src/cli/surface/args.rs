@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::draw::surface::{
-    DEFAULT_LABEL_HEIGHT_MM, LabelSide, Labels, Levels, SurfaceEngine, SurfaceLines,
+    DEFAULT_LABEL_HEIGHT_MM, LabelSide, Labels, Legend, Levels, SurfaceEngine, SurfaceLines,
 };
 use hiddenline::stages::engines::surface::CellOrder;
 use hiddenline::stages::surface::{Aspect, DEFAULT_SAMPLES};
@@ -12,6 +12,7 @@ use super::Job;
 use super::axes_args::AxesArgs;
 use super::input::SurfaceSource;
 use super::input_args::SurfaceInputArgs;
+use super::legend_args::LegendArgs;
 use crate::cli::camera::CameraArgs;
 use crate::cli::choice::one_of;
 use crate::cli::hatch::{HatchArgs, LightArgs};
@@ -58,6 +59,8 @@ pub(in crate::cli) struct SurfaceArgs {
     light: LightArgs,
     #[command(flatten)]
     axes: AxesArgs,
+    #[command(flatten)]
+    legend: LegendArgs,
     #[command(flatten)]
     page: PageArgs,
     #[command(flatten)]
@@ -200,7 +203,7 @@ impl SurfaceArgs {
     /// Checks what clap cannot; the error is a message about usage. `idle` warns about options
     /// without effect.
     pub(in crate::cli) fn job(self, idle: Vec<String>) -> Result<Job, Refused> {
-        let Self { surface, camera, lines, hatch, light, axes, page, output } = self;
+        let Self { surface, camera, lines, hatch, light, axes, legend, page, output } = self;
         let texts = surface.expression.into_iter().chain(surface.more);
         let texts: Vec<String> = texts.map(|text| text.trim().to_owned()).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
@@ -234,13 +237,14 @@ impl SurfaceArgs {
             );
         }
         let one_sheet = match &sheets.input {
-            SurfaceSource::Formulas { formulas, .. } => formulas.len() == 1,
+            SurfaceSource::Formulas { sheets, .. } => sheets.len() == 1,
             SurfaceSource::File(_) | SurfaceSource::Points(_) => true,
             SurfaceSource::Parametric { .. } => false,
         };
-        let two_sheets = matches!(&sheets.input, SurfaceSource::Formulas { formulas, .. } if formulas.len() == 2);
+        let two_sheets =
+            matches!(&sheets.input, SurfaceSource::Formulas { sheets, .. } if sheets.len() == 2);
         let is_grid = match &sheets.input {
-            SurfaceSource::Formulas { domain, .. } => one_sheet && domain.is_none(),
+            SurfaceSource::Formulas { sheets, .. } => one_sheet && sheets[0].domain.is_none(),
             SurfaceSource::File(_) => true,
             SurfaceSource::Points(_) | SurfaceSource::Parametric { .. } => false,
         };
@@ -280,6 +284,11 @@ impl SurfaceArgs {
         let inputs = sheets.file().into_iter().chain(view.input()).chain(output.inputs.clone());
         check_place(output.path.as_deref(), inputs)?;
         let axes = axes.axes(page.pen_width_mm())?.filter(|_| !lines.exact);
+        let legend = legend.legend(&mut sheets)?.filter(|_| !lines.exact);
+        let pens = sheets.pens(&output.plotting, page.pen_width_mm(), legend.is_some());
+        let has_pens_by_kind = pens.iter().any(|rule| rule.drawn.tells_kinds_apart());
+        let pen_width_mm = page.pen_width_mm();
+        let legend = legend.map(|legend| Legend { pens, pen_width_mm, ..legend });
         let levels = lines.levels.unwrap_or(Levels::Count(DEFAULT_LEVELS));
         let lines = SurfaceLines {
             along_x,
@@ -309,8 +318,11 @@ impl SurfaceArgs {
             engine: lines.engine,
             order: lines.order,
             axes,
+            legend,
             keep_scene: hatch.is_some(),
-            apart_by_kind: output.format == Format::Json || output.plotting.has_pens_by_kind(),
+            apart_by_kind: output.format == Format::Json
+                || output.plotting.has_pens_by_kind()
+                || has_pens_by_kind,
             ..SurfaceLines::default()
         };
         Ok(Job {

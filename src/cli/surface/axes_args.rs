@@ -67,20 +67,7 @@ struct Steps([Option<f64>; 3]);
 
 /// Three titles with commas between them; `\,` is a comma in a title.
 fn axis_titles(text: &str) -> Result<AxisTitles, String> {
-    let mut titles = vec![String::new()];
-    let mut characters = text.chars().peekable();
-    while let Some(character) = characters.next() {
-        let last = titles.len() - 1;
-        match character {
-            '\\' if characters.peek() == Some(&',') => {
-                characters.next();
-                titles[last].push(',');
-            }
-            ',' => titles.push(String::new()),
-            _ => titles[last].push(character),
-        }
-    }
-    let titles = titles.try_into().map_err(|_| {
+    let titles = values::with_commas(text).try_into().map_err(|_| {
         "give three titles of axes with commas between them; a comma in a title is written `\\,`"
     })?;
     Ok(AxisTitles(titles))

@@ -6,15 +6,17 @@ use std::path::{Path, PathBuf};
 
 use hiddenline::stages::draw::surface::{SurfaceError, SurfaceNote, axes_box};
 use hiddenline::stages::model::mesh::Mesh;
-use hiddenline::stages::surface::formula::Formula;
+use hiddenline::stages::page::{PenRule, tells_sheets_apart, with_sheet_pens};
+use hiddenline::stages::surface::formula::{Formula, Parameter};
 use hiddenline::stages::surface::{
-    Aspect, DEFAULT_RANGE, Duplicates, HeightField, HeightNote, HeightOptions, LatticeLines,
-    PointsError, SamplingError, ScatteredPoints, Surface, read_heights,
+    Aspect, DEFAULT_RANGE, Duplicates, FormulaSheet, HeightField, HeightNote, HeightOptions,
+    LatticeLines, PointsError, SamplingError, ScatteredPoints, Surface, read_heights,
 };
 
 use crate::cli::messages::counted;
 use crate::cli::paper::Notes;
 use crate::cli::paths;
+use crate::cli::plotting::Plotting;
 
 /// An error that other samples mend.
 pub(super) fn with_samples(error: &SurfaceError) -> String {
@@ -25,9 +27,8 @@ pub(super) fn with_samples(error: &SurfaceError) -> String {
 pub(in crate::cli) enum SurfaceSource {
     Formulas {
         texts: Vec<String>,
-        formulas: Vec<Formula>,
-        /// The formula with its text.
-        domain: Option<(Formula, String)>,
+        /// For each formula one sheet for each combination of the values of parameters.
+        sheets: Vec<FormulaSheet>,
         samples: (usize, usize),
     },
     File(PathBuf),
@@ -50,6 +51,10 @@ pub(in crate::cli) struct SurfaceInput {
     pub(super) log: [bool; 3],
     pub(super) reversed: [bool; 2],
     pub(super) z: Option<(f64, f64)>,
+    /// The parameters of each sheet of a formula, whose values its name may show.
+    pub(super) parameters: Vec<Vec<Parameter>>,
+    /// The names of sheets, where they are not the usual ones.
+    pub(super) names: Vec<String>,
 }
 
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
@@ -103,17 +108,13 @@ impl SurfaceInput {
     pub(super) fn read(&self, warnings: &mut Vec<String>) -> Result<Surface, Box<dyn Error>> {
         let failed = |path: &Path, error: &dyn Error| format!("{}: {error}", path.display());
         let surface = match &self.input {
-            SurfaceSource::Formulas { formulas, domain, samples, .. } => {
+            SurfaceSource::Formulas { sheets, samples, .. } => {
                 let x = self.options.x.unwrap_or(DEFAULT_RANGE);
                 let y = self.options.y.unwrap_or(DEFAULT_RANGE);
-                let surface = Surface::formulas(formulas.clone()).x(x.0, x.1).y(y.0, y.1);
+                let surface = Surface::sheets(sheets.clone()).x(x.0, x.1).y(y.0, y.1);
                 let surface = surface.samples(samples.0, samples.1);
-                let surface = match self.z {
+                match self.z {
                     Some((low, high)) => surface.z(low, high),
-                    None => surface,
-                };
-                match domain {
-                    Some((domain, _)) => surface.within(domain.clone()),
                     None => surface,
                 }
             }
@@ -140,7 +141,61 @@ impl SurfaceInput {
             }
         };
         let surface = surface.aspect(self.aspect).z_scale(self.z_scale);
-        Ok(surface.log(self.log).reversed(self.reversed))
+        let surface = surface.log(self.log).reversed(self.reversed);
+        Ok(match (&self.input, self.names.is_empty()) {
+            (SurfaceSource::Formulas { .. }, _) | (_, false) => surface.names(self.names.clone()),
+            _ => surface.names([self.title()]),
+        })
+    }
+
+    /// How many sheets there are.
+    fn n_sheets(&self) -> usize {
+        match &self.input {
+            SurfaceSource::Formulas { sheets, .. } => sheets.len(),
+            _ => 1,
+        }
+    }
+
+    /// The pens that were given, and one for each sheet if sheets are told apart.
+    pub(super) fn pens(
+        &self,
+        plotting: &Plotting,
+        width_mm: f64,
+        has_legend: bool,
+    ) -> Vec<PenRule> {
+        let (pens, n_sheets) = (plotting.pens(width_mm), self.n_sheets());
+        match tells_sheets_apart(&pens, n_sheets, has_legend) {
+            true => with_sheet_pens(pens, n_sheets, width_mm),
+            false => pens,
+        }
+    }
+
+    /// Names the sheets, one for each, or one for each formula, in which `{a}` is the value of a.
+    pub(super) fn name_sheets(&mut self, names: &[String]) -> Result<(), String> {
+        let n_sheets = self.n_sheets();
+        let n_formulas = match &self.input {
+            SurfaceSource::Formulas { texts, .. } => texts.len(),
+            _ => 1,
+        };
+        let each = match names.len() {
+            n if n == n_sheets => 1,
+            n if n == n_formulas => n_sheets / n_formulas,
+            n => {
+                return Err(format!(
+                    "--names gives {n} names for {}; a comma in a name is written `\\,`",
+                    counted(n_sheets, "sheet", "sheets")
+                ));
+            }
+        };
+        let none = Vec::new();
+        let name = |k: usize| {
+            let parameters = self.parameters.get(k).unwrap_or(&none).iter();
+            parameters.fold(names[k / each].clone(), |name, parameter| {
+                name.replace(&format!("{{{}}}", parameter.name()), parameter.text())
+            })
+        };
+        self.names = (0..n_sheets).map(name).collect();
+        Ok(())
     }
 
     /// Why the surface cannot be sampled, and what can be done about it.
@@ -166,12 +221,13 @@ impl SurfaceInput {
     fn nothing_to_draw(&self, outside_domain: bool) -> String {
         let range = |(from, to): (f64, f64)| format!("{from}:{to}");
         match &self.input {
-            SurfaceSource::Formulas { texts, domain, samples, .. } => {
+            SurfaceSource::Formulas { texts, sheets, samples } => {
                 let x = self.options.x.unwrap_or(DEFAULT_RANGE);
                 let y = self.options.y.unwrap_or(DEFAULT_RANGE);
+                let domain = sheets.first().and_then(|sheet| sheet.domain.as_ref());
                 let what = match domain {
-                    Some((_, text)) if outside_domain => {
-                        format!("the condition --where `{text}` holds")
+                    Some(domain) if outside_domain => {
+                        format!("the condition --where `{}` holds", domain.text())
                     }
                     _ if texts.len() > 1 => format!("`{}` have values", texts.join("`, `")),
                     _ => format!("`{}` has a value", texts.join("")),

@@ -3,8 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use hiddenline::stages::surface::formula::{Formula, Parameter, Variables};
-use hiddenline::stages::surface::{Aspect, Duplicates, HeightOptions, MAX_SAMPLES};
+use hiddenline::stages::surface::formula::{
+    Formula, MAX_VALUES, Parameter, ParameterList, Variables,
+};
+use hiddenline::stages::surface::{
+    Aspect, Duplicates, FormulaSheet, HeightOptions, MAX_SAMPLES, name_of_values, typeset,
+};
 
 use super::input::{SurfaceInput, SurfaceSource};
 use crate::cli::choice::one_of;
@@ -50,6 +54,13 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["grid", "points"])]
     set: Vec<Parameter>,
+    /// Draw one sheet for each value of a parameter, as in a=1,2,3 or a=0:1:0.25; several multiply
+    ///
+    /// a=FROM:TO:STEP takes evenly spaced values. The name is then a constant in all formulas and
+    /// conditions. In the names of sheets, {a} stands for its value. At most 32 sheets can be drawn.
+    #[arg(long = "for", value_name = "NAME=VALUES", value_parser = parameter_list)]
+    #[arg(allow_hyphen_values = true, conflicts_with_all = ["grid", "points", "parametric"])]
+    for_each: Vec<ParameterList>,
     /// Range of x; 5:-5 turns the axis around [default: -5:5, for a file 0 to columns - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     x: Option<(f64, f64)>,
@@ -116,6 +127,15 @@ impl SurfaceInputArgs {
                 return Err(format!("--set gives `{}` two values", parameter.name()));
             }
         }
+        let lists = self.for_each;
+        if let Some(list) = lists.iter().find(|l| parameters.iter().any(|p| p.name() == l.name())) {
+            return Err(format!("`{}` is given by --set and by --for", list.name()));
+        }
+        let combinations = ParameterList::combinations(&lists);
+        let combinations = combinations.map_err(|error| format!("--for: {error}"))?;
+        let all = |values: &Vec<Parameter>| [&parameters[..], &values[..]].concat();
+        let combinations: Vec<Vec<Parameter>> = combinations.iter().map(all).collect();
+        let (mut of_sheets, mut names) = (Vec::new(), Vec::new());
         let mut default_aspect = Aspect::Box;
         let input = if let Some(path) = self.grid {
             SurfaceSource::File(path)
@@ -128,13 +148,30 @@ impl SurfaceInputArgs {
             let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
             SurfaceSource::Parametric { formulas: Box::new(formulas), u, v, samples }
         } else if !texts.is_empty() {
-            let formulas = parsed(&texts, Variables::Plane, &parameters)?;
-            let domain = self.domain.map(|text| {
-                let parsed = Formula::parse_with(&text, Variables::Plane, &parameters);
-                let parsed = parsed.map_err(|error| in_formula("--where", &text, &error));
-                parsed.map(|formula| (formula, text))
-            });
-            SurfaceSource::Formulas { texts, formulas, domain: domain.transpose()?, samples }
+            if texts.len() * combinations.len() > MAX_VALUES && !lists.is_empty() {
+                let n = texts.len() * combinations.len();
+                return Err(format!("--for makes {n} sheets; {MAX_VALUES} are the most"));
+            }
+            let mut by_values = Vec::new();
+            for parameters in &combinations {
+                let formulas = parsed(&texts, Variables::Plane, parameters)?;
+                let domain = self.domain.as_ref().map(|text| {
+                    let parsed = Formula::parse_with(text, Variables::Plane, parameters);
+                    parsed.map_err(|error| in_formula("--where", text, &error))
+                });
+                let domain = domain.transpose()?;
+                let sheet = |height| FormulaSheet { height, domain: domain.clone() };
+                by_values.push(formulas.into_iter().map(sheet).collect::<Vec<_>>());
+            }
+            let mut sheets = Vec::new();
+            for k in 0..texts.len() {
+                sheets.extend(by_values.iter().map(|sheets| sheets[k].clone()));
+                of_sheets.extend(combinations.iter().cloned());
+            }
+            if !lists.is_empty() {
+                names = names_by_values(&sheets, &of_sheets, parameters.len(), texts.len());
+            }
+            SurfaceSource::Formulas { texts, sheets, samples }
         } else {
             let is_range = [self.x, self.y, self.z].iter().any(Option::is_some);
             let is_given = is_range || self.samples.is_some();
@@ -146,10 +183,11 @@ impl SurfaceInputArgs {
                 || !self.log.is_empty()
                 || self.z_scale != 1.0
                 || !parameters.is_empty()
+                || !lists.is_empty()
             {
                 return Err(
-                    "--x, --y, --z, --set, --samples, --z-scale, --aspect and --log are for surfaces: give \
-                            --expr, --grid, --points or --parametric"
+                    "--x, --y, --z, --set, --for, --samples, --z-scale, --aspect and --log are for \
+                     surfaces: give --expr, --grid, --points or --parametric"
                         .into(),
                 );
             }
@@ -171,6 +209,8 @@ impl SurfaceInputArgs {
             z: self.z,
             z_scale: self.z_scale,
             aspect: self.aspect.unwrap_or(default_aspect),
+            parameters: of_sheets,
+            names,
         }))
     }
 }
@@ -203,6 +243,47 @@ fn constant(text: &str) -> Result<f64, String> {
 fn parameter(text: &str) -> Result<Parameter, String> {
     let (name, value) = text.split_once('=').ok_or("give a name and a value, as in a=2")?;
     Parameter::new(name.trim(), constant(value.trim())?).map_err(|error| error.to_string())
+}
+
+/// A parameter with its values as `a=1,2,3` or `a=0:1:0.25`; they may be formulas such as `pi/2`.
+fn parameter_list(text: &str) -> Result<ParameterList, String> {
+    let (name, values) = text.split_once('=').ok_or("give a name and values, as in a=1,2,3")?;
+    let name = name.trim();
+    let list = match values.split(':').collect::<Vec<_>>()[..] {
+        [values] => {
+            let one = |text: &str| {
+                let parameter = Parameter::new(name, constant(text.trim())?);
+                let is_number = text.trim().parse::<f64>().is_ok();
+                let parameter = parameter.map_err(|error| error.to_string())?;
+                Ok(if is_number { parameter } else { parameter.written(text.trim()) })
+            };
+            let values: Result<_, String> = values.split(',').map(one).collect();
+            ParameterList::of(values?)
+        }
+        [from, to, step] => {
+            ParameterList::evenly(name, constant(from)?, constant(to)?, constant(step)?)
+        }
+        _ => return Err("give values as in a=1,2,3, or from, to and step as in a=0:1:0.25".into()),
+    };
+    list.map_err(|error| error.to_string())
+}
+
+/// What sheets are called that differ in the values of parameters, of which the first `n_fixed` are the
+/// same for all.
+fn names_by_values(
+    sheets: &[FormulaSheet],
+    parameters: &[Vec<Parameter>],
+    n_fixed: usize,
+    n_formulas: usize,
+) -> Vec<String> {
+    let name = |(sheet, parameters): (&FormulaSheet, &Vec<Parameter>)| {
+        let values = name_of_values(&parameters[n_fixed..]);
+        match n_formulas {
+            1 => values,
+            _ => format!("{}, {values}", typeset(sheet.height.text())),
+        }
+    };
+    sheets.iter().zip(parameters).map(name).collect()
 }
 
 /// Two numbers, the smaller first, with a colon between them.

@@ -12,15 +12,16 @@
 use glam::{DVec2, DVec3};
 
 use super::error::{SurfaceError, SurfaceNote};
+use super::legend::LegendText;
 use crate::axes::{
-    Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, is_straight_down, missing,
+    Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, is_straight_down, legend, missing,
 };
 use crate::camera::Camera;
 use crate::classify::{LineSelection, ViewSegments, ViewedScene};
 use crate::engines::edge::{VisibilityOptions, roberts};
 use crate::extent::Extent;
 use crate::model::scene::Scene;
-use crate::page::{Page, PageOptions, Placement};
+use crate::page::{DEFAULT_PEN_WIDTH_MM, Page, PageOptions, Placement};
 use crate::predicates::PiercePoint;
 use crate::strokes::Strokes;
 use crate::surface::SampledSurface;
@@ -53,8 +54,24 @@ pub struct Around {
     pub notes: Vec<SurfaceNote>,
 }
 
-/// Lays axes out around a surface, and places both on the page: what all takes up of the image, and the
-/// page. `extent` is what the surface takes up.
+/// What is to be around a surface.
+#[derive(Debug, Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// The axes.
+    pub axes: Option<&'a Axes>,
+    /// The legend.
+    pub legend: Option<&'a LegendText>,
+}
+
+impl Surroundings<'_> {
+    fn pen_width_mm(&self) -> f64 {
+        let of_legend = self.legend.map(|legend| legend.pen_width_mm);
+        self.axes.map(|axes| axes.pen_width_mm).or(of_legend).unwrap_or(DEFAULT_PEN_WIDTH_MM)
+    }
+}
+
+/// Lays axes and a legend out around a surface, and places all on the page: what it takes up of the image,
+/// and the page. `extent` is what the surface takes up.
 ///
 /// # Errors
 /// The page has no room, or a frame is asked for around a surface that is not seen as a map.
@@ -62,46 +79,71 @@ pub fn surround(
     bounds: &AxesBox,
     extent: Extent,
     camera: &Camera,
-    axes: Option<&Axes>,
+    wanted: Surroundings,
     options: &PageOptions,
 ) -> Result<(Around, Extent, Page), SurfaceError> {
     let mut around = Around::default();
     let bare = Page::place(&extent, camera, options)?;
-    let Some(axes) = axes else { return Ok((around, extent, bare)) };
-    if axes.style == Some(AxesStyle::Frame) && !is_straight_down(camera) {
+    let Surroundings { axes, legend } = wanted;
+    if axes.is_none() && legend.is_none() {
+        return Ok((around, extent, bare));
+    }
+    if axes.is_some_and(|axes| axes.style == Some(AxesStyle::Frame)) && !is_straight_down(camera) {
         return Err(SurfaceError::Frame);
     }
-    let text_mm = axes.text_height_mm.unwrap_or_else(|| text_height_mm(&bare, axes.pen_width_mm));
+    let text_mm = axes.and_then(|axes| axes.text_height_mm);
+    let text_mm = text_mm.unwrap_or_else(|| text_height_mm(&bare, wanted.pen_width_mm()));
     let mut placed = None;
     for economy in Economy::ALL {
         let size = AxesSize { text_mm, mm_per_unit: bare.mm_per_image_unit(), economy };
-        let Some((layout, page)) = settled(bounds, extent, camera, axes, options, size)? else {
-            around.notes.push(SurfaceNote::NoAxes);
-            return Ok((around, extent, bare));
+        let Some(settled) = settled(bounds, extent, camera, wanted, options, size)? else {
+            let (mut around, extent, page) =
+                surround(bounds, extent, camera, Surroundings { axes: None, legend }, options)?;
+            around.notes.insert(0, SurfaceNote::NoAxes);
+            return Ok((around, extent, page));
         };
-        let bare = Page::place(&extent.union(box_extent(&layout, camera)), camera, options)?;
-        let part = page.mm_per_image_unit() / bare.mm_per_image_unit();
+        // What axes have to answer for is their own text only.
+        let drawn = extent.union(box_extent(&settled.layout, camera));
+        let bare = Page::place(&drawn.union(settled.legend.extent(camera)), camera, options)?;
+        let part = settled.page.mm_per_image_unit() / bare.mm_per_image_unit();
         let is_large = options.placement != Placement::Fit || part >= LEAST_PART;
-        placed = Some((layout, page, is_large));
+        placed = Some((settled, is_large));
         if is_large {
             break;
         }
     }
-    let Some((layout, page, is_large)) = placed else { return Ok((around, extent, bare)) };
+    let Some((settled, is_large)) = placed else { return Ok((around, extent, bare)) };
+    let Settled { layout, legend: legend_strokes, page } = settled;
     if !is_large {
         around.notes.push(SurfaceNote::LittleRoom);
     }
     if layout.has_too_many_ticks() {
         around.notes.push(SurfaceNote::TooManyTicks);
     }
-    let missing = missing(&[axes.titles.axes.join(""), axes.titles.drawing.clone()].concat());
+    let mut texts: Vec<&str> = Vec::new();
+    if let Some(axes) = axes {
+        texts.extend(axes.titles.axes.iter().map(String::as_str));
+        texts.push(&axes.titles.drawing);
+    }
+    if let Some(legend) = legend {
+        texts.extend(legend.entries.iter().map(|entry| entry.text.as_str()));
+    }
+    let missing = missing(&texts.concat());
     if !missing.is_empty() {
         around.notes.push(SurfaceNote::MissingLetters(missing));
     }
     around.strokes = layout.strokes();
+    around.strokes.append(&legend_strokes);
     let extent = extent.union(box_extent(&layout, camera)).union(around.strokes.extent(camera));
     around.layout = layout;
     Ok((around, extent, page))
+}
+
+/// Axes and a legend that suit the scale of their page.
+struct Settled {
+    layout: AxesLayout,
+    legend: Strokes,
+    page: Page,
 }
 
 /// A layout made for the scale that the page then has.
@@ -109,18 +151,26 @@ fn settled(
     bounds: &AxesBox,
     extent: Extent,
     camera: &Camera,
-    axes: &Axes,
+    wanted: Surroundings,
     options: &PageOptions,
     mut size: AxesSize,
-) -> Result<Option<(AxesLayout, Page)>, SurfaceError> {
+) -> Result<Option<Settled>, SurfaceError> {
     let mut found = None;
     for _ in 0..MOST_ROUNDS {
-        let Some(layout) = AxesLayout::new(bounds, camera, axes, &size) else { return Ok(None) };
+        let layout = match wanted.axes {
+            Some(axes) => AxesLayout::new(bounds, camera, axes, &size),
+            None => Some(AxesLayout::default()),
+        };
+        let Some(layout) = layout else { return Ok(None) };
         let all = extent.union(box_extent(&layout, camera)).union(layout.strokes().extent(camera));
-        let page = Page::place(&all, camera, options)?;
+        let beside = all.corners().unwrap_or_default();
+        let legend = wanted.legend.map_or(Strokes::default(), |wanted| {
+            legend(&wanted.entries, wanted.place, beside, size.text(), 1.0 / size.mm_per_unit)
+        });
+        let page = Page::place(&all.union(legend.extent(camera)), camera, options)?;
         let scale = page.mm_per_image_unit();
         let change = (scale / size.mm_per_unit - 1.0).abs();
-        found = Some((layout, page));
+        found = Some(Settled { layout, legend, page });
         if change < SETTLED {
             break;
         }

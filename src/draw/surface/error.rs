@@ -132,6 +132,9 @@ pub enum SurfaceNote {
     /// Ticks at the steps asked for would be too many.
     #[error("ticks at the given steps would be too many: an axis has others")]
     TooManyTicks,
+    /// There are more sheets than dashes for pens that look alike.
+    #[error("{0} sheets look like others: their pens have the same color and width")]
+    SheetsAlike(usize),
     /// The box around the surface reaches in front of the near plane.
     #[error("no axes are drawn, since the eye is too close to the box around the surface")]
     NoAxes,

@@ -14,6 +14,9 @@ const LEVELS_WANTED: f64 = 12.0;
 /// Heights of levels are written with at most this many decimals: beyond that, digits are rounding.
 const MOST_DECIMALS: usize = 9;
 
+/// Most levels that a legend lists one by one.
+const MOST_LISTED: usize = 5;
+
 /// A level curve's height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Level {
@@ -29,6 +32,10 @@ struct Level {
 pub(super) struct LevelSet {
     levels: Vec<Level>,
     decimals: usize,
+    /// The distance between neighbors before any scaling, if it is always the same.
+    step: Option<f64>,
+    /// Every so many levels are index lines, if any are.
+    index_every: Option<u16>,
 }
 
 impl LevelSet {
@@ -56,7 +63,9 @@ impl LevelSet {
                 let step = (scale.value(high.z) - scale.value(low.z)) / n;
                 let decimals = (2.0 - step.abs().log10().floor()).clamp(0.0, MOST_DECIMALS as f64);
                 let decimals = if decimals.is_nan() { 0 } else { decimals as usize };
-                Self { levels: (1..=*count).map(level).collect(), decimals }
+                let step = Some(step.abs()).filter(|_| !scale.is_log);
+                let levels = (1..=*count).map(level).collect();
+                Self { levels, decimals, step, index_every: lines.index_every }
             }
             Levels::At(heights) => {
                 let mut heights = heights.clone();
@@ -68,7 +77,8 @@ impl LevelSet {
                     is_index: is_nth(k),
                 };
                 let decimals = heights.iter().map(|height| decimals(*height)).max().unwrap_or(0);
-                Self { levels: heights.iter().enumerate().map(of).collect(), decimals }
+                let levels = heights.iter().enumerate().map(of).collect();
+                Self { levels, decimals, step: None, index_every: lines.index_every }
             }
             Levels::Every { step, offset } => {
                 let every = lines.index_every.unwrap_or(DEFAULT_INDEX_EVERY);
@@ -113,7 +123,26 @@ impl LevelSet {
             Level { drawn: scale.drawn(height), height, is_index }
         };
         let levels = (0..n.max(0.0) as usize).map(level).collect();
-        Ok(Self { levels, decimals: decimals(step).max(decimals(offset)) })
+        let decimals = decimals(step).max(decimals(offset));
+        Ok(Self { levels, decimals, step: Some(step), index_every })
+    }
+
+    /// Which levels these are, in words, as in a legend.
+    pub(super) fn described(&self) -> String {
+        let Some(step) = self.step else {
+            let texts = (1..=self.levels.len() as u16).map(|number| self.text(number));
+            return match self.levels.len() {
+                n @ 1..=MOST_LISTED => {
+                    let word = if n == 1 { "level" } else { "levels" };
+                    format!("{word} {}", texts.collect::<Vec<_>>().join(", "))
+                }
+                _ => "levels".to_owned(),
+            };
+        };
+        let number = |step: f64| format!("{:.2e}", step).parse().unwrap_or(step).to_string();
+        let heavy = self.index_every.filter(|_| self.has_index());
+        let heavy = heavy.map(|every| format!(", heavy {}", number(step * f64::from(every))));
+        format!("interval {}{}", number(step), heavy.unwrap_or_default())
     }
 
     /// The heights as drawn.

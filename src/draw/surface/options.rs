@@ -1,8 +1,9 @@
 //! Which lines of a surface are drawn, and how.
 
-use crate::axes::Axes;
+use crate::axes::{Axes, LegendPlace};
 use crate::draw::DEFAULT_SHORTEST_STROKE_MM;
 use crate::engines::surface::CellOrder;
+use crate::page::{DEFAULT_PEN_WIDTH_MM, PenRule};
 
 /// How far lines may deviate from the true curves, in millimeters on paper, unless set otherwise.
 pub const DEFAULT_SMOOTHNESS_MM: f64 = 0.1;
@@ -55,6 +56,8 @@ pub struct SurfaceLines {
     pub order: Option<CellOrder>,
     /// Axes around the surface; `None` for no axes.
     pub axes: Option<Axes>,
+    /// A legend of the sheets and levels.
+    pub legend: Option<Legend>,
     /// Keep the triangles between the samples, for hatching.
     pub keep_scene: bool,
     /// Join only pieces of one kind.
@@ -86,6 +89,7 @@ impl Default for SurfaceLines {
             engine: SurfaceEngine::default(),
             order: None,
             axes: Some(Axes::default()),
+            legend: None,
             keep_scene: false,
             apart_by_kind: false,
             shortest_stroke_mm: DEFAULT_SHORTEST_STROKE_MM,
@@ -186,6 +190,19 @@ impl SurfaceLines {
         Self { axes: Some(axes.into()), ..self }
     }
 
+    /// A legend of the sheets and levels; sheets whose pens look alike have dashes.
+    ///
+    /// ```
+    /// use hiddenline::{Legend, LegendPlace, Levels, SurfaceLines};
+    ///
+    /// let beside = SurfaceLines::default().legend(Legend::default());
+    /// let below = SurfaceLines::default().levels(Levels::Round).legend(LegendPlace::Bottom);
+    /// ```
+    #[must_use]
+    pub fn legend(self, legend: impl Into<Legend>) -> Self {
+        Self { legend: Some(legend.into()), ..self }
+    }
+
     /// The visible-line algorithm; all give the same lines.
     #[must_use]
     pub fn engine(self, engine: SurfaceEngine) -> Self {
@@ -200,6 +217,30 @@ impl SurfaceLines {
     /// Whether any lines are drawn that are not grid lines, apart from level curves.
     pub(super) fn has_mesh_lines(&self) -> bool {
         self.silhouette || self.border || self.intersections || self.mesh
+    }
+}
+
+/// A legend: which line is which sheet, and how far apart levels are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Legend {
+    /// Where it is.
+    pub place: LegendPlace,
+    /// Which pens draw what: sheets whose pens are equally wide and of one color are dashed. Set by
+    /// [`SurfaceDrawing`](crate::SurfaceDrawing).
+    pub pens: Vec<PenRule>,
+    /// Width of the line of pens without a rule, in millimeters.
+    pub pen_width_mm: f64,
+}
+
+impl Default for Legend {
+    fn default() -> Self {
+        Self::from(LegendPlace::default())
+    }
+}
+
+impl From<LegendPlace> for Legend {
+    fn from(place: LegendPlace) -> Self {
+        Self { place, pens: Vec::new(), pen_width_mm: DEFAULT_PEN_WIDTH_MM }
     }
 }
 

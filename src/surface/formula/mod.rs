@@ -25,6 +25,7 @@ mod jet;
 mod jet_graph;
 mod lexer;
 mod parameter;
+mod parameter_list;
 mod parser;
 mod tape;
 
@@ -32,6 +33,7 @@ pub use interval::Interval;
 pub use jet::{Class, Jet};
 pub use jet_graph::{Axis, JetGraph, JetLine};
 pub use parameter::{Parameter, ParameterError};
+pub use parameter_list::{MAX_VALUES, ParameterList};
 pub use tape::{CONSTANTS, FUNCTIONS};
 
 use tape::Tape;
@@ -57,6 +59,7 @@ pub enum Variables {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
     tape: Tape,
+    text: String,
 }
 
 /// A syntax error in a formula.
@@ -185,7 +188,13 @@ impl Formula {
             return Err(FormulaError { column: 1, problem: Problem::TooLong });
         }
         let tokens = lexer::tokens(text)?;
-        Ok(Self { tape: parser::parse(&tokens, variables, parameters)? })
+        let tape = parser::parse(&tokens, variables, parameters)?;
+        Ok(Self { tape, text: text.trim().to_owned() })
+    }
+
+    /// The text that it was parsed from.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The value at one pair of variables; NaN where the formula is undefined.

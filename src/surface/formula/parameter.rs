@@ -13,6 +13,7 @@ const VARIABLES: [&str; 6] = ["x", "y", "r", "theta", "u", "v"];
 pub struct Parameter {
     name: String,
     value: f64,
+    text: String,
 }
 
 /// Why a name or a value makes no parameter.
@@ -27,7 +28,22 @@ pub enum ParameterError {
     /// Infinite, or not a number.
     #[error("the value of `{0}` must be finite")]
     NotFinite(String),
+    /// A list without values.
+    #[error("a parameter needs a value")]
+    NoValues,
+    /// More than [`MAX_VALUES`](super::MAX_VALUES).
+    #[error("parameters have more than {} values or combinations of values", super::MAX_VALUES)]
+    TooMany,
+    /// Even steps that lead nowhere.
+    #[error("the steps of `{0}` do not lead from its first to its last value")]
+    Step(String),
+    /// Two lists of values for one name.
+    #[error("`{0}` is given two lists of values")]
+    Twice(String),
 }
+
+/// Significant digits of values as they are written.
+const DIGITS: usize = 10;
 
 impl Parameter {
     /// A parameter for [`Formula::parse_with`](super::Formula::parse_with).
@@ -53,7 +69,14 @@ impl Parameter {
         if !value.is_finite() {
             return of(ParameterError::NotFinite);
         }
-        Ok(Self { name: known.clone(), value })
+        let rounded: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
+        Ok(Self { name: known.clone(), value, text: (rounded + 0.0).to_string() })
+    }
+
+    /// The same with its value written in another way, such as pi/2.
+    #[must_use]
+    pub fn written(self, text: &str) -> Self {
+        Self { text: text.to_owned(), ..self }
     }
 
     /// The name, in lowercase: formulas do not tell cases apart.
@@ -64,5 +87,10 @@ impl Parameter {
     /// The value.
     pub fn value(&self) -> f64 {
         self.value
+    }
+
+    /// The value as it is written: with at most ten digits, unless it was given a text.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 }

@@ -290,6 +290,36 @@ fn options_without_effect_are_warned_of() {
         let stderr = drawn(more);
         assert!(stderr.contains(&format!("warning: {message}")), "{more:?}: {stderr}");
     }
+    let plotted =
+        |more: &[&str]| told(&folder, &[&["surface", "x*y", "-o", "x.svg"], more].concat(), 0);
+    let levels = ["--lines", "levels", "--view", "top"];
+    for (more, message) in [
+        (&["--label-side", "uphill"][..], "--label-side has no effect without levels among"),
+        (&["--lines", "both,levels", "--label-side", "uphill"], "effect without labels; --labels"),
+        (&[&levels[..], &["--labels", "none", "--label-side=uphill"]].concat(), "without labels"),
+        (&[&levels[..], &["--exact", "--labels", "all"]].concat(), "--labels has no effect with"),
+        (&[&levels[..], &["--exact", "--label-side=uphill"]].concat(), "--label-side has no"),
+        (&[&levels[..], &["--exact", "--negative", "dashed"]].concat(), "--negative has no effect"),
+        (&["--exact", "--legend"], "--legend has no effect with --exact"),
+        (&["--names", "a"], "--names has no effect without --legend"),
+        (&["--pen", "level=2"], "--pen level=… draws nothing"),
+        (&["--pen", "box=2"], "--pen box=… draws nothing"),
+        (&["--axes", "back", "--pen", "level-base=2"], "--pen level-base=… draws nothing"),
+    ] {
+        let stderr = plotted(more);
+        assert!(stderr.contains("warning: ") && stderr.contains(message), "{more:?}: {stderr}");
+    }
+    for more in [
+        &[&levels[..], &["--label-side", "uphill", "--labels", "all"]].concat()[..],
+        &[&levels[..], &["--label-side", "uphill", "--negative", "dashed"]].concat(),
+        &["--lines", "x,levels", "--every", "80", "--labels", "all", "--label-side", "uphill"],
+        &["--legend", "--names", "a"],
+        &["--axes", "box", "--title", "T", "--pen", "box=2", "--pen", "back=3", "--pen", "title=4"],
+        &["--axes", "base", "--pen", "box=2", "--pen", "text=3", "--pen", "axis=4"],
+    ] {
+        let stderr = plotted(more);
+        assert!(!stderr.contains("warning"), "{more:?}: {stderr}");
+    }
     for more in [
         &["--dash", "1,1", "--hidden", "dashed", "--pen", "hidden=2"][..],
         &["--hidden-levels", "2", "--dash", "1,1"],

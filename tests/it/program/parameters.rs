@@ -40,6 +40,70 @@ fn a_parameter_is_the_number_that_it_stands_for() {
 }
 
 #[test]
+fn each_value_of_a_parameter_is_a_sheet() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |arguments: &[&str]| {
+        let all = [&["surface", "--samples", "9", "--format", "json"], arguments].concat();
+        let output = hiddenline(folder.path(), &all);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        output.stdout
+    };
+    let sheets = drawn(&["1+sin(x)", "2+sin(x)", "3+sin(x)"]);
+    assert!(sheets == drawn(&["a+sin(x)", "--for", "a=1,2,3"]));
+    assert!(sheets == drawn(&["--for=a=1:3:1", "a+sin(x)"]));
+    assert!(sheets == drawn(&["a+sin(x)+k", "--for", "a=1,2,3", "--set", "k=0"]));
+    // Several multiply, the last one first, and formulas come one after the other.
+    let product = drawn(&["1+3*x", "1+4*x", "2+3*x", "2+4*x", "-1", "-1", "-2", "-2"]);
+    let lists = ["--for", "a=1,2", "--for", "b=3,4"];
+    assert!(product == drawn(&[&["a+b*x", "-a"], &lists[..]].concat()));
+    // Each sheet has its own domain.
+    let where_ = drawn(&["--where", "x<1", "1+0*x"]);
+    assert!(where_ == drawn(&["--where", "x<a", "a+0*x", "--for", "a=1"]));
+    let both = drawn(&["--where", "x<a", "a+0*x", "--for", "a=1,2"]);
+    for other in ["x<1", "x<2"] {
+        assert!(both != drawn(&["--where", other, "a+0*x", "--for", "a=1,2"]), "{other}");
+    }
+}
+
+#[test]
+fn legends_name_sheets_by_formulas_values_or_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| {
+        let all = [&["surface", "--samples", "9", "-o", "a.svg"], arguments].concat();
+        let output = hiddenline(folder.path(), &all);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let svg = fs::read_to_string(folder.path().join("a.svg")).unwrap();
+        // What was typed is in the file, too.
+        let svg = svg.lines().filter(|line| !line.contains("surface")).collect::<Vec<_>>();
+        (svg.join("\n"), text(&output.stderr))
+    };
+    let (named, _) = run(&["a*x", "--for", "a=1,-2", "--legend", "--names", "a = 1,a = −2"]);
+    assert!(run(&["a*x", "--for", "a=1,-2", "--legend"]).0 == named);
+    assert!(run(&["--legend", "a*x", "--for", "a=1,-2", "--names", "a = {a}"]).0 != named);
+    let braces = ["--names", "a = {a}"];
+    let (typed, _) = run(&[&["a*x", "--for", "a=1,pi/2", "--legend"], &braces[..]].concat());
+    assert!(typed == run(&["a*x", "--for", "a=1,pi/2", "--legend=right"]).0);
+    let (formulas, _) = run(&["-x^2*y", "x", "--legend", "--names", "−x²·y,x"]);
+    assert!(run(&["-x^2*y", "x", "--legend"]).0 == formulas);
+    assert!(run(&["-x^2*y", "x", "--legend", "left"]).0 != formulas);
+    let (none, said) = run(&["-x^2*y", "x", "--legend", "none", "--names", "a,b"]);
+    assert!(said.contains("--names has no effect without --legend"), "{said}");
+    assert!(none == run(&["-x^2*y", "x"]).0);
+    let fails = |arguments: &[&str], message: &str| {
+        assert_fails(&hiddenline(folder.path(), &[&["surface"], arguments].concat()), 2, message);
+    };
+    fails(&["x", "y", "--names", "a,b,c"], "--names gives 3 names for 2 sheets");
+    fails(&["x", "--for", "x=1,2"], "has a meaning in formulas already");
+    fails(&["x", "--for", "a"], "as in a=1,2,3");
+    fails(&["x", "--for", "a=1:2"], "from, to and step");
+    fails(&["x", "--for", "a=1:0:1"], "do not lead from its first to its last value");
+    fails(&["x", "--for", "a=1:33:1"], "more than 32");
+    fails(&["x", "y", "--for", "a=1:17:1"], "--for makes 34 sheets; 32 are the most");
+    fails(&["x", "--for", "a=1", "--for", "a=2"], "`a` is given two lists of values");
+    fails(&["x", "--for", "a=1", "--set", "a=2"], "`a` is given by --set and by --for");
+}
+
+#[test]
 fn a_parameter_must_not_hide_a_name_of_the_language() {
     for taken in [
         "x", "y", "r", "theta", "u", "v", "pi", "e", "tau", "nan", "sin", "min", "if", "and", "or",

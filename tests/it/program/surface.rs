@@ -191,10 +191,11 @@ fn axes_have_ticks_and_letters_outside_of_the_surface() {
     );
     assert_eq!(
         (kinds(&strokes), engine.as_str()),
-        (vec!["axis", "grid", "level", "text"], "max-min")
+        (vec!["axis", "grid", "level", "text", "title"], "max-min")
     );
     let (strokes, engine) = drawn(&folder, &["sin(x)*y", "--title", "A title"]);
-    assert_eq!((kinds(&strokes), engine.as_str()), (vec!["axis", "grid", "text"], "max-min"));
+    let expected = vec!["axis", "grid", "text", "title"];
+    assert_eq!((kinds(&strokes), engine.as_str()), (expected, "max-min"));
     let of = |kind: &str| strokes.iter().filter(|s| s["kind"] == kind).count();
     // Three axes with about seven ticks each, and four or so between two of them.
     assert!((60..200).contains(&of("axis")) && of("text") > 20, "{} {}", of("axis"), of("text"));

@@ -7,6 +7,7 @@ mod floating_horizon;
 mod height_files;
 mod heights;
 mod labels;
+mod legend;
 mod level_lengths;
 mod margins;
 mod max_min;
