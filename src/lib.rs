@@ -222,7 +222,7 @@ pub use draw::surface::{
 pub use engines::surface::CellOrder;
 pub use surface::formula::{Formula, Parameter, ParameterList};
 pub use surface::{
-    Aspect, FormulaSheet, Grid, HeightField, HeightOptions, SampledSurface, Surface,
+    Aspect, FormulaSheet, Grid, HeightField, HeightOptions, Outside, SampledSurface, Surface,
 };
 
 // A view of it.

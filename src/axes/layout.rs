@@ -121,6 +121,7 @@ pub struct AxesLayout {
     pub(super) hull: Vec<DVec2>,
     wires: Vec<Wire>,
     has_too_many_ticks: bool,
+    base: Option<f64>,
 }
 
 impl AxesLayout {
@@ -149,7 +150,8 @@ impl AxesLayout {
             }
         }
         let layouter = Layouter { around, bbox, axes, style, sizes, economy };
-        let layout = layouter.layout(chosen);
+        let base = Some(bbox.side(2, bbox.is_front(2, false)));
+        let layout = AxesLayout { base, ..layouter.layout(chosen) };
         (!layout.hull.is_empty()).then_some(layout)
     }
 
@@ -171,6 +173,11 @@ impl AxesLayout {
         &self.wires
     }
 
+    /// The height of the horizontal face of the box that is behind the surface; `None` without axes.
+    pub fn base(&self) -> Option<f64> {
+        self.base
+    }
+
     /// The corners of the box's image.
     pub fn box_in_image(&self) -> &[DVec2] {
         &self.hull
@@ -186,6 +193,12 @@ impl AxesLayout {
     pub(super) fn texts(&self) -> impl Iterator<Item = &TextBlock> {
         self.axes.iter().flat_map(LaidAxis::texts).chain(&self.title)
     }
+}
+
+/// The height of the horizontal face of a box that is behind what is in it.
+pub fn base_height(around: &AxesBox, camera: &Camera) -> f64 {
+    let bbox = BoundingBox { low: around.low, high: around.high, camera };
+    bbox.side(2, bbox.is_front(2, false))
 }
 
 /// Whether a camera looks straight down or up in parallel projection, so that a surface is seen as a map.

@@ -22,7 +22,7 @@ mod ticks;
 mod walls;
 
 pub use self::font::{missing, text};
-pub use self::layout::{AxesBox, AxesLayout, AxesSize, Economy, is_straight_down};
+pub use self::layout::{AxesBox, AxesLayout, AxesSize, Economy, base_height, is_straight_down};
 pub use self::legend::{LegendEntry, LegendPlace, legend};
 pub use self::options::{Axes, AxesStyle, BoxFront, Titles, ZAxis};
 pub use self::ticks::TickRule;

@@ -14,7 +14,7 @@ use hiddenline::stages::read::ModelFormat;
 use hiddenline::stages::shading::fill::Coloring;
 use hiddenline::stages::shading::preview::Show;
 use hiddenline::stages::strokes::HiddenLines;
-use hiddenline::stages::surface::Duplicates;
+use hiddenline::stages::surface::{Duplicates, Outside};
 use hiddenline::stages::write::Format;
 use hiddenline::stages::write::dxf::DxfUnit;
 use hiddenline::stages::write::svg::StrokeElement;
@@ -140,6 +140,10 @@ choices! {
         Depth "Nearer is lighter"
         Faces "Each face has its own color"
         Normals "Red is right, green is up, blue is toward the viewer"
+    }
+    Outside {
+        Cut "The surface is cut off"
+        Clamp "There are plateaus at the ends of the range"
     }
     StrokeElement {
         Path "<path>, one for each stroke"

@@ -103,6 +103,12 @@ const RULES: &[Rule] = &[
         is_idle: |c| !c.is_present("legend") || c.has("legend", &["none"]),
         reason: "without --legend",
     },
+    Rule {
+        option: "z-outside",
+        commands: MESHES,
+        is_idle: |c| !c.is_present("z"),
+        reason: "without --z",
+    },
     Rule { option: "u", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule { option: "v", commands: MESHES, is_idle: is_no_patch, reason: NO_PATCH },
     Rule {

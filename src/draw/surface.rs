@@ -8,6 +8,7 @@
 //! ```
 
 mod around;
+mod base_levels;
 mod bound;
 mod certificate;
 mod certified_cells;
@@ -31,6 +32,7 @@ pub use self::options::{
     SurfaceEngine, SurfaceLines,
 };
 
+use self::base_levels::base_levels;
 use self::dashes::dash_negative;
 use self::grid::{draw_grid, grid_to_draw};
 use self::labels::{Labelling, label};
@@ -47,8 +49,8 @@ use crate::engines::surface::max_min;
 use crate::extent::Extent;
 use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions};
-use crate::strokes::{Stroke, Strokes};
-use crate::surface::{AxisScale, LatticeLines, LinedScene, SampledSurface, Surface};
+use crate::strokes::{Stroke, StrokeKind, Strokes};
+use crate::surface::{AxisScale, LatticeLines, LevelCurve, LinedScene, SampledSurface, Surface};
 use crate::timing::{Seconds, timed};
 
 /// More of the paper covered with lines than this looks like a sheet of ink.
@@ -135,7 +137,8 @@ pub fn draw_surface(
     }
     if let Some((low, high)) = heights.filter(|_| !surface.has_given_heights()) {
         let scale = AxisScale { factor: 1.0, ..surface.scales()[2] };
-        let [low, high] = [low, high].map(|height| brief(scale.value(height)));
+        let [a, b] = [low, high].map(|height| brief(scale.value(height)));
+        let (low, high) = (a.min(b), a.max(b));
         notes.push(SurfaceNote::Poles { low, high });
     }
     if surface.n_rim_points_joined() > 0 {
@@ -160,7 +163,7 @@ pub fn draw_surface(
         None => Some(timed(&mut seconds.topology, || lined(&surface, lines, &levels))?),
     };
     let extent = match &lined {
-        Some(lined) => lined.scene.extent(&camera),
+        Some((lined, _)) => lined.scene.extent(&camera),
         None => surface.extent(&camera),
     };
     let legend = lines.legend.as_ref();
@@ -179,7 +182,7 @@ pub fn draw_surface(
             visible_wires = drawn.wires;
             (drawn.drawn, drawn.size)
         }
-        (None, Some(lined)) => {
+        (None, Some((lined, _))) => {
             let scale = page.mm_per_image_unit();
             let drawn = meshed::draw(lined, &camera, &meshed_options(lines), scale);
             if lines.engine == SurfaceEngine::MaxMin && drawn.engine != max_min::NAME {
@@ -192,18 +195,29 @@ pub fn draw_surface(
     drawn.seconds += seconds;
     let drawing = &mut drawn.drawing;
     let ink = Ink::of(drawing, lines, &page);
+    let on_base = match &lined {
+        Some((lined, curves)) if !drawing.is_empty() => {
+            timed(&mut drawn.seconds.visibility, || {
+                base_levels(curves, around.base, &lined.scene, &camera, lines.exact)
+            })
+        }
+        _ => Strokes::default(),
+    };
     let which = labels(lines, &levels, &camera);
     if which != Labels::None {
         let labelling =
             Labelling { which, side: lines.label_side, height_mm: lines.label_height_mm };
+        let mut others = around.strokes.clone();
+        others.append(&on_base);
         let left = timed(&mut drawn.seconds.strokes, || {
-            label(drawing, &around.strokes, &levels, &labelling, page.mm_per_image_unit())
+            label(drawing, &others, &levels, &labelling, page.mm_per_image_unit())
         });
         if !left.is_empty() {
             let texts = left.into_iter().map(|level| levels.text(level));
             notes.push(SurfaceNote::Unlabelled(texts.collect()));
         }
     }
+    drawing.append(&on_base);
     if lines.negative_dashed && !lines.exact {
         *drawing = dash_negative(drawing, &levels, page.mm_per_image_unit());
     }
@@ -214,11 +228,11 @@ pub fn draw_surface(
         *drawing = legend.dashed(whole, is_dashed, page.mm_per_image_unit());
     }
     let scene = match lined {
-        Some(lined) => Some(lined.scene),
+        Some((lined, _)) => Some(lined.scene),
         None if lines.keep_scene
             || visible_wires.is_none() && !around.layout.wires().is_empty() =>
         {
-            Some(self::lined(&surface, lines, &levels)?.scene)
+            Some(self::lined(&surface, lines, &levels)?.0.scene)
         }
         None => None,
     };
@@ -309,12 +323,13 @@ fn brief(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
 
-/// The surface as a scene, with the chosen grid lines and level curves.
+/// The surface as a scene, with the chosen grid lines and level curves; and these curves once more if they
+/// are to be drawn on the base, too.
 fn lined(
     surface: &SampledSurface,
     lines: &SurfaceLines,
     levels: &LevelSet,
-) -> Result<LinedScene, SurfaceError> {
+) -> Result<(LinedScene, Vec<LevelCurve>), SurfaceError> {
     let lattices = surface.lattices();
     // Scattered points have no grid lines.
     let triangles = lines.mesh || lattices.is_empty() && lines.has_grid_lines();
@@ -333,14 +348,18 @@ fn lined(
     if mesh.n_triangles() == 0 {
         return Err(SurfaceError::NoCells);
     }
+    if !(lines.has_grid_lines() || lines.border || lines.mesh) {
+        mesh.leave_out(StrokeKind::Cut);
+    }
     if lines.levels.is_some() {
         check(mesh.n_pieces_with_levels(&heights))?;
         mesh.add_levels(&heights);
         mesh.mark_index_levels(|number| levels.is_index(number));
     }
+    let curves = if lines.project_levels { mesh.level_curves() } else { Vec::new() };
     let LinedScene { scene, lines: drawn } = mesh.into_scene()?;
     let scene = if lines.intersections { scene.with_intersections() } else { scene };
-    Ok(LinedScene { scene, lines: drawn })
+    Ok((LinedScene { scene, lines: drawn }, curves))
 }
 
 /// The lines of a surface as it is sampled, ready for any number of views while it is turned, and its
@@ -354,17 +373,19 @@ pub fn for_turning(
 ) -> Result<TurningSurface, SurfaceError> {
     let sampled = surface.sample()?;
     let levels = LevelSet::new(lines, &sampled)?;
-    let lined = lined(&sampled, lines, &levels)?;
+    let (lined, curves) = lined(&sampled, lines, &levels)?;
     let legend = lines.legend.as_ref();
     let names = surface.sheet_names();
     let legend = legend.map(|legend| LegendText::new(legend, &names, &sampled, lines, &levels));
-    Ok(TurningSurface { lined, sampled, legend, has_index_levels: levels.has_index() })
+    Ok(TurningSurface { lined, curves, sampled, legend, has_index_levels: levels.has_index() })
 }
 
 /// A surface made ready to be turned.
 #[derive(Debug, Clone)]
 pub struct TurningSurface {
     lined: LinedScene,
+    /// Level curves that are drawn on the base, too.
+    curves: Vec<LevelCurve>,
     sampled: SampledSurface,
     legend: Option<LegendText>,
     has_index_levels: bool,
@@ -391,12 +412,14 @@ impl TurningSurface {
         lines: &SurfaceLines,
         page: &PageOptions,
     ) -> Result<(TurningLines, Camera, Page), SurfaceError> {
-        let camera = view.camera(self.sampled.bounds())?;
+        let camera = view.camera(self.sampled.box_bounds())?;
         let mut visible = surface_turning_lines(&self.lined, &camera, &meshed_options(lines));
         let scene = &self.lined.scene;
         let extent = scene.extent(&camera);
         let wanted = Surroundings { axes: lines.axes.as_ref(), legend: self.legend.as_ref() };
         let (around, _, page) = surround(&axes_box(&self.sampled), extent, &camera, wanted, page)?;
+        let on_base = base_levels(&self.curves, around.base, scene, &camera, lines.exact);
+        visible.push_pane(&on_base, &camera);
         visible.push_pane(&around.with_wires(scene, &camera), &camera);
         Ok((visible, camera, page))
     }

@@ -41,6 +41,8 @@ pub struct TrimmedGrid {
     /// is torn between two samples inside is left from both of them.
     rim: FxHashMap<[u32; 2], DVec3>,
     has_poles: bool,
+    /// The lowest and the highest height, where heights are cut off.
+    heights: Option<(f64, f64)>,
 }
 
 /// What a grid is cut off by, besides its formula.
@@ -107,7 +109,7 @@ impl TrimmedGrid {
             .flat_map_iter(|j| leaving_edges(&grid, j))
             .map(|edge| (edge, last_inside(&grid, function, domain, edge)))
             .collect();
-        Ok(Self { grid, rim, has_poles: false })
+        Ok(Self { grid, rim, has_poles: false, heights: None })
     }
 
     /// Samples `function` on given lines where it has a value, torn open where it jumps.
@@ -157,7 +159,7 @@ impl TrimmedGrid {
             end.z.abs() > GROWTH * z.abs() && (end.z - z).abs() > closes
         };
         let has_poles = heights.is_none() && rim.par_iter().any(is_pole);
-        Ok(Self { grid, rim, has_poles })
+        Ok(Self { grid, rim, has_poles, heights })
     }
 
     /// Whether heights seem to grow without end somewhere along the rim.
@@ -221,6 +223,12 @@ impl TrimmedGrid {
     pub fn scale_heights(&mut self, factor: f64) {
         self.grid.scale_heights(factor);
         self.rim.values_mut().for_each(|p| p.z *= factor);
+        self.heights = self.heights.map(|(low, high)| (low * factor, high * factor));
+    }
+
+    /// Whether the surface is cut off at the height of two points.
+    fn is_cut_at(&self, a: DVec3, b: DVec3) -> bool {
+        a.z == b.z && self.heights.is_some_and(|(low, high)| a.z == low || a.z == high)
     }
 
     /// Multiplies the x and y of all points by factors above 0.
@@ -322,8 +330,8 @@ fn last_before(
 }
 
 impl LinedMesh {
-    /// Adds the part of a surface inside its domain, with grid lines up to the rim, and the rim as
-    /// lines of kind boundary if any grid lines are drawn. O(samples).
+    /// Adds the part of a surface inside its domain, with grid lines up to the rim, the rim as lines of kind
+    /// boundary if any grid lines are drawn, and lines of kind cut where heights are cut off. O(samples).
     pub fn push_trimmed(&mut self, trimmed: &TrimmedGrid, lines: &LatticeLines) {
         self.push_trimmed_at(trimmed, lines, None);
     }
@@ -379,8 +387,15 @@ impl LinedMesh {
                         for pair in rest.windows(2) {
                             self.push_triangle([first, pair[0], pair[1]], lines.triangles);
                         }
-                        if draws_rim && run.len() > 2 && n_whole < 2 {
-                            self.push_line([run[run.len() - 1], first], StrokeKind::Boundary, None);
+                        if run.len() < 3 || n_whole == 2 {
+                            continue;
+                        }
+                        let ends = [run[run.len() - 1], first];
+                        let [a, b] = ends.map(|vertex| self.positions[vertex as usize]);
+                        if trimmed.is_cut_at(a, b) {
+                            self.push_line(ends, StrokeKind::Cut, None);
+                        } else if draws_rim {
+                            self.push_line(ends, StrokeKind::Boundary, None);
                         }
                     }
                 }

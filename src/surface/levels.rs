@@ -50,8 +50,19 @@ impl LinedMesh {
         self.move_to_levels(&levels);
         self.cut_where_level(&levels);
         let traced = self.traced_places(&levels);
+        let curves = self.split_at_levels(&levels, traced);
+        self.lines.extend(curves);
+    }
+
+    /// Cuts all triangles and lines at the given heights, in rising order.
+    pub(super) fn split_at_planes(&mut self, heights: &[f64]) {
+        self.split_at_levels(heights, TracedPlaces::default());
+    }
+
+    /// Cuts all triangles and lines at the given heights; the lines there.
+    fn split_at_levels(&mut self, levels: &[f64], traced: TracedPlaces) -> Vec<SurfaceLine> {
         let mut cutter = Cutter {
-            levels: &levels,
+            levels,
             n_original: self.positions.len() as u32,
             positions: std::mem::take(&mut self.positions),
             origins: Vec::new(),
@@ -83,12 +94,12 @@ impl LinedMesh {
         for (sheet, first_triangle) in self.sheets.iter_mut().zip(firsts) {
             sheet.first_triangle = first_triangle;
         }
-        let mut lines = Vec::with_capacity(self.lines.len() + curve_lines.len());
+        let mut lines = Vec::with_capacity(self.lines.len());
         for line in &self.lines {
             cutter.split(*line, &mut lines);
         }
-        lines.extend(curve_lines);
         (self.positions, self.triangles, self.lines) = (cutter.positions, triangles, lines);
+        curve_lines
     }
 
     /// Makes curves index lines that `is_index` is true for, by the numbers of their levels, from 1 for the

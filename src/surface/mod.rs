@@ -7,9 +7,11 @@ mod cells;
 mod crossings;
 mod domain;
 mod grid;
+mod height_cut;
 mod height_function;
 mod heights;
 mod lattice_extent;
+mod level_curves;
 mod levels;
 mod lined_mesh;
 mod names;
@@ -29,6 +31,7 @@ pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
 pub use height_function::HeightFunction;
 pub use heights::{HeightError, HeightField, HeightNote, HeightOptions, read_heights};
 pub use lattice_extent::lattice_extent;
+pub use level_curves::LevelCurve;
 pub use lined_mesh::{LatticeLines, LinedMesh, LinedScene, SEAM_TOLERANCE, close_seams};
 pub use names::{name_of_values, typeset};
 pub use places::Places;
@@ -36,4 +39,6 @@ pub use places::Places;
 pub use points::{Duplicates, PointsError, ScatteredPoints, delaunay};
 pub use sampled::{Lattice, SampledSurface, SheetJets};
 pub use sampling_error::SamplingError;
-pub use source::{Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, FamilyError, FormulaSheet, Surface};
+pub use source::{
+    Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, FamilyError, FormulaSheet, Outside, Surface,
+};

@@ -20,14 +20,14 @@ const RANGE_ROUNDING: f64 = 1e-12;
 impl Surface {
     /// How values become coordinates, before any of them is multiplied.
     pub(super) fn own_scales(&self) -> [AxisScale; 3] {
-        let [x, y] = self.is_reversed().map(|is_reversed| if is_reversed { -1.0 } else { 1.0 });
-        [(x, 0), (y, 1), (1.0, 2)]
-            .map(|(factor, axis)| AxisScale { factor, is_log: self.log[axis] })
+        let [x, y, z] = self.is_reversed().map(|is_reversed| if is_reversed { -1.0 } else { 1.0 });
+        [(x, 0), (y, 1), (z, 2)].map(|(factor, axis)| AxisScale { factor, is_log: self.log[axis] })
     }
 
-    fn is_reversed(&self) -> [bool; 2] {
+    fn is_reversed(&self) -> [bool; 3] {
         let [x, y] = self.reversed;
-        [x != (self.x.0 > self.x.1), y != (self.y.0 > self.y.1)]
+        let is_z_reversed = self.z.is_some_and(|(from, to)| from > to);
+        [x != (self.x.0 > self.x.1), y != (self.y.0 > self.y.1), is_z_reversed]
     }
 
     /// The ranges of x and y in coordinates, the smaller one first.

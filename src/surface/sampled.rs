@@ -8,13 +8,14 @@ use super::axis_scale::AxisScale;
 use super::domain::{Cutting, TrimmedGrid};
 use super::formula::{Axis, Formula, JetGraph};
 use super::grid::{Grid, Holes, check_parameters, check_ranges, check_size};
+use super::height_cut::HeightCut;
 use super::height_function::HeightFunction;
 use super::lattice_extent::lattice_extent;
 use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
 use super::places::Places;
 use super::proportions::{check_positive, mapped};
 use super::sampling_error::SamplingError;
-use super::source::{FormulaSheet, Source, Surface};
+use super::source::{FormulaSheet, Outside, Source, Surface};
 use crate::camera::Camera;
 use crate::extent::Extent;
 
@@ -45,7 +46,11 @@ pub struct SampledSurface {
     factors: DVec3,
     /// The lines of the lattice before that, if formulas were sampled.
     places: Option<Places>,
-    has_given_heights: bool,
+    /// The heights that were asked for, as drawn, and the values that they stand for.
+    given_heights: Option<(f64, f64)>,
+    given_range: Option<(f64, f64)>,
+    /// Where what is given by points is cut off.
+    cut: Option<HeightCut>,
 }
 
 #[derive(Debug, Clone)]
@@ -107,15 +112,30 @@ impl Surface {
         }
     }
 
-    /// The range of heights that is asked for, if it is, in coordinates before any is multiplied.
+    /// The range of heights at which formulas are cut off, if they are, in coordinates before any is
+    /// multiplied.
     pub(crate) fn heights(&self) -> Option<(f64, f64)> {
+        let is_formula = matches!(self.source, Source::Formulas(_));
+        self.given_heights().filter(|_| is_formula && self.outside == Outside::Cut)
+    }
+
+    /// The range of heights that is asked for, if it is, in coordinates before any is multiplied.
+    fn given_heights(&self) -> Option<(f64, f64)> {
         let scale = self.own_scales()[2];
         let drawn = |z: f64| match scale.is_log && z <= 0.0 {
-            true => f64::NEG_INFINITY,
+            true => f64::NEG_INFINITY * scale.factor,
             false => scale.drawn(z),
         };
-        let is_formula = matches!(self.source, Source::Formulas(_));
-        self.z.filter(|_| is_formula).map(|(low, high)| (drawn(low), drawn(high)))
+        let (a, b) = self.z.map(|(from, to)| (drawn(from), drawn(to)))?;
+        Some((a.min(b), a.max(b)))
+    }
+
+    /// The formula of a sheet, with plateaus if these are asked for.
+    fn height_of(&self, sheet: &FormulaSheet) -> Formula {
+        match (self.z, self.outside) {
+            (Some((a, b)), Outside::Clamp) => sheet.height.clamped(a.min(b), a.max(b)),
+            _ => sheet.height.clone(),
+        }
     }
 
     /// The surface's own lines, if formulas are sampled, in coordinates before any is multiplied.
@@ -144,7 +164,7 @@ impl Surface {
         let scales = self.own_scales();
         match &self.source {
             Source::Formulas(sheets) => {
-                let jets = |sheet: &FormulaSheet| sheet.height.jets().scaled(scales);
+                let jets = |sheet: &FormulaSheet| self.height_of(sheet).jets().scaled(scales);
                 sheets.iter().map(|sheet| SheetJets::Height(jets(sheet))).collect()
             }
             Source::Parametric { formulas, .. } => {
@@ -231,12 +251,12 @@ impl Surface {
             let is_turned = matches!(self.source, Source::Parametric { .. }) && self.is_turned();
             return self.sample_at(Some(if is_turned { places.turned() } else { places }));
         };
-        let sample = |FormulaSheet { height, domain }: &FormulaSheet| {
-            let domain = domain.as_ref().map(|domain| self.domain_function(domain));
+        let sample = |sheet: &FormulaSheet| {
+            let domain = sheet.domain.as_ref().map(|domain| self.domain_function(domain));
             let cutting = Cutting { domain: domain.as_ref(), heights, closes };
             let [xs, ys] = [Axis::First, Axis::Second].map(|axis| places.along(axis).to_vec());
-            let jets = height.jets().scaled(self.own_scales());
-            TrimmedGrid::sample_torn(&self.function(height), jets, &cutting, xs, ys)
+            let jets = self.height_of(sheet).jets().scaled(self.own_scales());
+            TrimmedGrid::sample_torn(&self.function(sheet), jets, &cutting, xs, ys)
         };
         let grids = sheets.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         let sheets = if grids.iter().all(TrimmedGrid::is_whole) {
@@ -244,7 +264,14 @@ impl Surface {
         } else {
             joined_at_rim(grids)
         };
-        self.at_scale(sheets, 0, Some(places))
+        let is_cut = self.heights().is_some();
+        match self.at_scale(sheets, 0, Some(places.clone())) {
+            Err(SamplingError::NoHeights { .. }) if is_cut => {
+                let (low, high) = self.sample_at(Some(places))?.ranges()[2];
+                Err(SamplingError::OutOfRange { low, high })
+            }
+            sampled => sampled,
+        }
     }
 
     /// The samples as they are drawn.
@@ -256,7 +283,7 @@ impl Surface {
     ) -> Result<SampledSurface, SamplingError> {
         let scales = self.own_scales();
         let formulas = match &self.source {
-            Source::Formulas(sheets) => sheets.iter().map(|s| s.height.clone()).collect(),
+            Source::Formulas(sheets) => sheets.iter().map(|s| self.height_of(s)).collect(),
             _ => Vec::new(),
         };
         let ranges = [(0.0, 0.0); 3];
@@ -271,7 +298,9 @@ impl Surface {
             n_not_positive,
             factors,
             places,
-            has_given_heights: self.heights().is_some(),
+            given_heights: self.given_heights(),
+            given_range: self.z.map(|(a, b)| (a.min(b), a.max(b))),
+            cut: None,
         };
         if scales[2].is_log && !surface.formulas.is_empty() {
             surface.n_not_positive = surface.count_not_positive();
@@ -281,6 +310,20 @@ impl Surface {
             return Err(SamplingError::NoHeights { outside_domain: self.has_heights_outside() });
         }
         surface.ranges = self.ranges(&scales, low, high);
+        if let Some((least, most)) = surface.given_heights
+            && surface.formulas.is_empty()
+        {
+            if least > high.z || most < low.z {
+                let (low, high) = surface.ranges[2];
+                return Err(SamplingError::OutOfRange { low, high });
+            }
+            let is_clamped = self.outside == Outside::Clamp;
+            let cut = HeightCut { low: least, high: most, is_clamped };
+            surface.cut = (least > low.z || most < high.z).then_some(cut);
+            let (low, high) = surface.bounds();
+            surface.ranges = self.ranges(&scales, low, high);
+        }
+        let (low, high) = surface.box_bounds();
         let size = high - low;
         if !size.is_finite() {
             return Err(SamplingError::TooFarApart { low: low.z, high: high.z });
@@ -293,9 +336,10 @@ impl Surface {
         Ok(surface)
     }
 
-    /// Whether one axis of the two is turned around.
+    /// Whether an odd number of axes is turned around.
     fn is_turned(&self) -> bool {
-        self.reversed[0] != self.reversed[1]
+        let [x, y] = self.reversed;
+        x ^ y ^ self.z.is_some_and(|(from, to)| from > to)
     }
 
     /// Rows of points, reversed if that keeps the upper side of the surface where it was.
@@ -314,7 +358,7 @@ impl Surface {
     ) -> Result<Samples, SamplingError> {
         let sample = |sheet: &FormulaSheet| {
             let (xs, ys) = on();
-            Grid::sample_at(&self.function(&sheet.height), xs, ys)
+            Grid::sample_at(&self.function(sheet), xs, ys)
         };
         let grids = sheets.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
         if grids.len() == 2 && grids.iter().any(|grid| grid.holes() != Holes::None) {
@@ -333,10 +377,10 @@ impl Surface {
         sheets: &[FormulaSheet],
         on: &impl Fn() -> (Vec<f64>, Vec<f64>),
     ) -> Result<Vec<TrimmedGrid>, SamplingError> {
-        let sample = |FormulaSheet { height, domain }: &FormulaSheet| {
+        let sample = |sheet: &FormulaSheet| {
             let (xs, ys) = on();
-            let domain = domain.as_ref().map(|domain| self.domain_function(domain));
-            TrimmedGrid::sample_at(&self.function(height), domain.as_ref(), xs, ys)
+            let domain = sheet.domain.as_ref().map(|domain| self.domain_function(domain));
+            TrimmedGrid::sample_at(&self.function(sheet), domain.as_ref(), xs, ys)
         };
         Ok(sheets.iter().map(sample).collect::<Result<_, _>>()?)
     }
@@ -346,17 +390,18 @@ impl Surface {
         HeightFunction::scaled(domain.clone(), [of_x, of_y, AxisScale::DATA])
     }
 
-    fn function(&self, formula: &Formula) -> HeightFunction {
-        HeightFunction::scaled(formula.clone(), self.own_scales())
+    fn function(&self, sheet: &FormulaSheet) -> HeightFunction {
+        HeightFunction::scaled(self.height_of(sheet), self.own_scales())
     }
 
     /// Whether there is a domain, and samples have heights outside of it.
     fn has_heights_outside(&self) -> bool {
         let Source::Formulas(sheets) = &self.source else { return false };
         let Ok([x, y]) = self.drawn_ranges() else { return false };
-        let sample = |f: &Formula| Grid::sample_function(&self.function(f), x, y, self.samples);
+        let sample =
+            |s: &FormulaSheet| Grid::sample_function(&self.function(s), x, y, self.samples);
         let of_domains = sheets.iter().filter(|sheet| sheet.domain.is_some());
-        of_domains.map(|s| sample(&s.height)).any(|g| g.is_ok_and(|g| g.heights().is_some()))
+        of_domains.map(sample).any(|g| g.is_ok_and(|g| g.heights().is_some()))
     }
 }
 
@@ -398,7 +443,23 @@ impl SampledSurface {
 
     /// Whether the range of its heights was asked for.
     pub(crate) fn has_given_heights(&self) -> bool {
-        self.has_given_heights
+        self.given_heights.is_some()
+    }
+
+    /// The heights that were asked for, from the smaller to the larger one.
+    pub fn given_range(&self) -> Option<(f64, f64)> {
+        self.given_range
+    }
+
+    /// The corners of the box around the surface: its [`bounds`](Self::bounds), but with the heights that
+    /// were asked for.
+    pub fn box_bounds(&self) -> (DVec3, DVec3) {
+        let (mut low, mut high) = self.bounds();
+        if let Some((least, most)) = self.given_heights {
+            low.z = if least.is_finite() { least } else { low.z };
+            high.z = if most.is_finite() { most } else { high.z };
+        }
+        (low, high)
     }
 
     /// Whether heights seem to grow without end somewhere, where it is cut off there.
@@ -469,6 +530,10 @@ impl SampledSurface {
                 points.iter().filter(|p| p.is_finite()).for_each(|p| add(*p));
             }
         }
+        if let Some(cut) = &self.cut {
+            bounds.0.z = bounds.0.z.max(cut.low);
+            bounds.1.z = bounds.1.z.min(cut.high);
+        }
         bounds
     }
 
@@ -499,6 +564,11 @@ impl SampledSurface {
                 points.iter_mut().for_each(|p| *p *= factors);
             }
         }
+        self.cut = self.cut.map(|cut| cut.scaled(factors.z));
+        self.given_heights = self.given_heights.map(|(low, high)| {
+            let (a, b) = (low * factors.z, high * factors.z);
+            (a.min(b), a.max(b))
+        });
         (0..3).for_each(|k| self.scales[k].factor *= factors[k]);
         self.factors *= factors;
     }
@@ -535,6 +605,9 @@ impl SampledSurface {
                 mesh.push_lattice_at(*n_columns, points, lines, places, &|_, _| false);
             }
         }
+        if let Some(cut) = &self.cut {
+            mesh.cut_off(cut);
+        }
         mesh
     }
 
@@ -561,7 +634,7 @@ impl SampledSurface {
     /// The sheets, if they are whole grids over rectangles; otherwise none.
     pub fn grids(&self) -> &[Grid] {
         match &self.sheets {
-            Samples::Grids(grids) => grids,
+            Samples::Grids(grids) if self.cut.is_none() => grids,
             _ => &[],
         }
     }

@@ -16,6 +16,14 @@ pub enum SamplingError {
         /// Whether there are samples with heights, but none of them in the domain.
         outside_domain: bool,
     },
+    /// There are heights, but none in the range of z.
+    #[error("heights are from {low} to {high}: none is in the range of z")]
+    OutOfRange {
+        /// The lowest.
+        low: f64,
+        /// The highest.
+        high: f64,
+    },
     /// The difference of two heights is too large for a number.
     #[error(
         "heights from {low:e} to {high:e} are too far apart to draw; divide the formula or file"

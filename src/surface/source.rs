@@ -43,8 +43,9 @@ pub struct Surface {
     pub(super) source: Source,
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
-    /// Heights outside are cut off.
     pub(super) z: Option<(f64, f64)>,
+    /// What becomes of heights outside.
+    pub(super) outside: Outside,
     pub(super) samples: (usize, usize),
     pub(super) aspect: Aspect,
     pub(super) z_scale: f64,
@@ -96,6 +97,29 @@ pub enum FamilyError {
     /// The values cannot be combined.
     #[error(transparent)]
     Parameters(#[from] ParameterError),
+}
+
+/// What becomes of heights outside of the range of z.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Outside {
+    /// The surface is cut off.
+    #[default]
+    Cut,
+    /// There are plateaus at the ends of the range.
+    Clamp,
+}
+
+impl Outside {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Cut, Self::Clamp];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cut => "cut",
+            Self::Clamp => "clamp",
+        }
+    }
 }
 
 /// How long the edges of the box around a surface are.
@@ -271,6 +295,7 @@ impl Surface {
             x,
             y,
             z: None,
+            outside: Outside::default(),
             samples,
             aspect,
             z_scale: 1.0,
@@ -323,9 +348,9 @@ impl Surface {
         self
     }
 
-    /// The heights that are drawn, the smaller one first: the surface is cut along the others. It matters
-    /// only for surfaces of formulas. Without it all heights are drawn, but for those that grow without
-    /// end at poles.
+    /// The heights that are drawn: the surface is cut off exactly at both, and the box around it has these
+    /// heights. If `from` is larger than `to`, the axis is turned around. Without it all heights are drawn,
+    /// but for those that grow without end at poles of formulas.
     ///
     /// ```
     /// use hiddenline::Surface;
@@ -333,8 +358,21 @@ impl Surface {
     /// let bowl = Surface::formula("x^2 + y^2")?.z(0.0, 4.0);
     /// # Ok::<(), hiddenline::Error>(())
     /// ```
-    pub fn z(mut self, low: f64, high: f64) -> Self {
-        self.z = Some((low, high));
+    pub fn z(mut self, from: f64, to: f64) -> Self {
+        self.z = Some((from, to));
+        self
+    }
+
+    /// What becomes of heights outside of the range of z.
+    ///
+    /// ```
+    /// use hiddenline::{Outside, Surface};
+    ///
+    /// let crater = Surface::formula("r^2")?.z(1.0, 4.0).outside(Outside::Clamp);
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn outside(mut self, outside: Outside) -> Self {
+        self.outside = outside;
         self
     }
 

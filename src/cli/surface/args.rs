@@ -101,6 +101,9 @@ struct LineArgs {
     /// Draw every N-th level curve as an index line, twice as wide [default: 5 with every:STEP]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     index_every: Option<u16>,
+    /// What is also drawn on the base of the box around the surface, as far as the surface does not hide it
+    #[arg(long, value_enum, value_name = "LINES")]
+    project: Option<ProjectName>,
     /// Which level curves have their heights written into gaps [default: index or all from above]
     ///
     /// In views from above without grid lines the default is index, or all where there are no index lines;
@@ -137,6 +140,12 @@ struct LineArgs {
     /// as given
     #[arg(long)]
     exact: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum ProjectName {
+    /// Level curves, with the pen level-base
+    Levels,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -228,11 +237,12 @@ impl SurfaceArgs {
         if !has(LineName::Levels)
             && (lines.index_every.is_some()
                 || lines.labels.is_some()
+                || lines.project.is_some()
                 || lines.negative == Negative::Dashed)
         {
             return Err(
-                "--index-every, --labels and --negative are for level curves: give --lines levels, \
-                 too"
+                "--index-every, --project, --labels and --negative are for level curves: give \
+                 --lines levels, too"
                     .into(),
             );
         }
@@ -296,6 +306,7 @@ impl SurfaceArgs {
             every: lines.every,
             levels: has(LineName::Levels).then_some(levels),
             index_every: lines.index_every,
+            project_levels: lines.project.is_some(),
             negative_dashed: lines.negative == Negative::Dashed,
             labels: lines.labels.map(|labels| match labels {
                 LabelName::Index => Labels::Index,

@@ -10,7 +10,7 @@ use hiddenline::stages::page::{PenRule, tells_sheets_apart, with_sheet_pens};
 use hiddenline::stages::surface::formula::{Formula, Parameter};
 use hiddenline::stages::surface::{
     Aspect, DEFAULT_RANGE, Duplicates, FormulaSheet, HeightField, HeightNote, HeightOptions,
-    LatticeLines, PointsError, SamplingError, ScatteredPoints, Surface, read_heights,
+    LatticeLines, Outside, PointsError, SamplingError, ScatteredPoints, Surface, read_heights,
 };
 
 use crate::cli::messages::counted;
@@ -51,6 +51,7 @@ pub(in crate::cli) struct SurfaceInput {
     pub(super) log: [bool; 3],
     pub(super) reversed: [bool; 2],
     pub(super) z: Option<(f64, f64)>,
+    pub(super) outside: Outside,
     /// The parameters of each sheet of a formula, whose values its name may show.
     pub(super) parameters: Vec<Vec<Parameter>>,
     /// The names of sheets, where they are not the usual ones.
@@ -112,11 +113,7 @@ impl SurfaceInput {
                 let x = self.options.x.unwrap_or(DEFAULT_RANGE);
                 let y = self.options.y.unwrap_or(DEFAULT_RANGE);
                 let surface = Surface::sheets(sheets.clone()).x(x.0, x.1).y(y.0, y.1);
-                let surface = surface.samples(samples.0, samples.1);
-                match self.z {
-                    Some((low, high)) => surface.z(low, high),
-                    None => surface,
-                }
+                surface.samples(samples.0, samples.1)
             }
             SurfaceSource::File(path) => {
                 let bytes = read_bytes(path).map_err(|error| failed(path, &error))?;
@@ -142,6 +139,10 @@ impl SurfaceInput {
         };
         let surface = surface.aspect(self.aspect).z_scale(self.z_scale);
         let surface = surface.log(self.log).reversed(self.reversed);
+        let surface = match self.z {
+            Some((from, to)) => surface.z(from, to).outside(self.outside),
+            None => surface,
+        };
         Ok(match (&self.input, self.names.is_empty()) {
             (SurfaceSource::Formulas { .. }, _) | (_, false) => surface.names(self.names.clone()),
             _ => surface.names([self.title()]),
@@ -202,6 +203,9 @@ impl SurfaceInput {
     pub(super) fn sampling_error(&self, error: &SamplingError) -> String {
         match error {
             SamplingError::NoHeights { outside_domain } => self.nothing_to_draw(*outside_domain),
+            SamplingError::OutOfRange { low, high } => {
+                format!("the surface has heights from {low} to {high}: none of them is in --z")
+            }
             SamplingError::NotPositive { axis, .. } => {
                 format!("{error}; give another range by --{axis} or leave {axis} out of --log")
             }

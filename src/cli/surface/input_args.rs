@@ -7,7 +7,7 @@ use hiddenline::stages::surface::formula::{
     Formula, MAX_VALUES, Parameter, ParameterList, Variables,
 };
 use hiddenline::stages::surface::{
-    Aspect, Duplicates, FormulaSheet, HeightOptions, MAX_SAMPLES, name_of_values, typeset,
+    Aspect, Duplicates, FormulaSheet, HeightOptions, MAX_SAMPLES, Outside, name_of_values, typeset,
 };
 
 use super::input::{SurfaceInput, SurfaceSource};
@@ -67,10 +67,12 @@ pub(in crate::cli) struct SurfaceInputArgs {
     /// Range of y, as for x [default: -5:5, for a file 0 to rows - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     y: Option<(f64, f64)>,
-    /// Range of heights; a formula's surface is cut off outside [default: all, but for poles]
-    #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["grid", "points", "parametric"])]
+    /// Range of heights, as for x; the surface is cut off outside [default: all, but for poles]
+    #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     z: Option<(f64, f64)>,
+    /// What becomes of heights outside of --z
+    #[arg(long, value_parser = one_of::<Outside>(), default_value = Outside::Cut.name())]
+    z_outside: Outside,
     /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]
     #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
     samples: Option<(usize, usize)>,
@@ -207,6 +209,7 @@ impl SurfaceInputArgs {
             },
             duplicates: self.duplicates.unwrap_or_default(),
             z: self.z,
+            outside: self.z_outside,
             z_scale: self.z_scale,
             aspect: self.aspect.unwrap_or(default_aspect),
             parameters: of_sheets,

@@ -14,7 +14,8 @@ use glam::{DVec2, DVec3};
 use super::error::{SurfaceError, SurfaceNote};
 use super::legend::LegendText;
 use crate::axes::{
-    Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, is_straight_down, legend, missing,
+    Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, Wire, base_height, is_straight_down,
+    legend, missing,
 };
 use crate::camera::Camera;
 use crate::classify::{LineSelection, ViewSegments, ViewedScene};
@@ -50,6 +51,8 @@ const SETTLED: f64 = 1e-3;
 pub struct Around {
     pub(super) layout: AxesLayout,
     pub(super) strokes: Strokes,
+    /// The height of the face that the box stands on, seen from above, or hangs from, seen from below.
+    pub(super) base: f64,
     /// What is worth knowing about it.
     pub notes: Vec<SurfaceNote>,
 }
@@ -82,7 +85,8 @@ pub fn surround(
     wanted: Surroundings,
     options: &PageOptions,
 ) -> Result<(Around, Extent, Page), SurfaceError> {
-    let mut around = Around::default();
+    let base = base_height(bounds, camera);
+    let mut around = Around { base, ..Around::default() };
     let bare = Page::place(&extent, camera, options)?;
     let Surroundings { axes, legend } = wanted;
     if axes.is_none() && legend.is_none() {
@@ -135,6 +139,7 @@ pub fn surround(
     around.strokes = layout.strokes();
     around.strokes.append(&legend_strokes);
     let extent = extent.union(box_extent(&layout, camera)).union(around.strokes.extent(camera));
+    around.base = layout.base().unwrap_or(base);
     around.layout = layout;
     Ok((around, extent, page))
 }
@@ -191,29 +196,20 @@ fn text_height_mm(page: &Page, pen_width_mm: f64) -> f64 {
 
 /// The box around a surface with the values on its axes.
 pub fn axes_box(surface: &SampledSurface) -> AxesBox {
-    let (low, high) = surface.bounds();
-    let (scales, ranges) = (*surface.scales(), *surface.ranges());
+    let (low, high) = surface.box_bounds();
+    let (scales, mut ranges) = (*surface.scales(), *surface.ranges());
+    if let Some((least, most)) = surface.given_range() {
+        // A logarithmic axis begins at the lowest height if it is to begin at 0 or below.
+        let least = if scales[2].is_log && least <= 0.0 { ranges[2].0 } else { least };
+        ranges[2] = (least, most);
+    }
     AxesBox { low, high, scales, ranges, z_may_grow: !surface.has_given_heights() }
 }
 
 impl Around {
     /// The axes, with those parts of the lines behind the surface that `scene` does not hide.
     pub fn with_wires(self, scene: &Scene, camera: &Camera) -> Strokes {
-        let wires = self.layout.wires();
-        let mut segments = ViewSegments::new(scene);
-        for wire in wires {
-            let ends = wire.ends.map(|p| segments.push_point(PiercePoint::at(p)));
-            segments.push(ends, wire.kind);
-        }
-        let none = LineSelection::NONE;
-        let view = ViewedScene::with_segments(scene, camera, none, 180.0, &segments);
-        let (visibility, _) = roberts::solve(&view, &VisibilityOptions::EXACT);
-        let first = scene.n_lines() as u32;
-        let mut parts = vec![Vec::new(); wires.len()];
-        for (number, drawn) in view.selected().iter().enumerate() {
-            let visible = visibility.spans(number).iter().filter(|span| span.qi == 0);
-            parts[(drawn.edge - first) as usize] = visible.map(|span| [span.t0, span.t1]).collect();
-        }
+        let parts = visible_parts(self.layout.wires(), scene, camera);
         self.with_visible(&parts, camera)
     }
 
@@ -228,4 +224,23 @@ impl Around {
         }
         self.strokes
     }
+}
+
+/// The parts of wires that `scene` does not hide, from 0 at the first end to 1 at the other.
+pub(super) fn visible_parts(wires: &[Wire], scene: &Scene, camera: &Camera) -> Vec<Vec<[f64; 2]>> {
+    let mut segments = ViewSegments::new(scene);
+    for wire in wires {
+        let ends = wire.ends.map(|p| segments.push_point(PiercePoint::at(p)));
+        segments.push(ends, wire.kind);
+    }
+    let none = LineSelection::NONE;
+    let view = ViewedScene::with_segments(scene, camera, none, 180.0, &segments);
+    let (visibility, _) = roberts::solve(&view, &VisibilityOptions::EXACT);
+    let first = scene.n_lines() as u32;
+    let mut parts = vec![Vec::new(); wires.len()];
+    for (number, drawn) in view.selected().iter().enumerate() {
+        let visible = visibility.spans(number).iter().filter(|span| span.qi == 0);
+        parts[(drawn.edge - first) as usize] = visible.map(|span| [span.t0, span.t1]).collect();
+    }
+    parts
 }

@@ -23,6 +23,8 @@ pub struct SurfaceLines {
     /// Every n-th level curve is an index line, of kind index and by default twice as wide. `None` stands
     /// for every fifth if the levels have a step, and for none otherwise.
     pub index_every: Option<u16>,
+    /// Draw the level curves on the base of the box around the surface, too, as far as it does not hide them.
+    pub project_levels: bool,
     /// Dash the level curves of heights below 0.
     pub negative_dashed: bool,
     /// Which level curves have their heights written into gaps. `None` stands for the index lines, or all
@@ -75,6 +77,7 @@ impl Default for SurfaceLines {
             every: 1,
             levels: None,
             index_every: None,
+            project_levels: false,
             negative_dashed: false,
             labels: None,
             label_side: LabelSide::Upright,
@@ -132,6 +135,12 @@ impl SurfaceLines {
     #[must_use]
     pub fn index_every(self, n: u16) -> Self {
         Self { index_every: Some(n), ..self }
+    }
+
+    /// Level curves on the base of the box around the surface, too.
+    #[must_use]
+    pub fn project_levels(self) -> Self {
+        Self { project_levels: true, ..self }
     }
 
     /// Heights written into gaps of level curves.

@@ -55,7 +55,7 @@ pub(super) fn sample(
     page: &PageOptions,
 ) -> Result<SmoothSurface, SurfaceError> {
     let own = surface.sample()?;
-    let camera = view.camera(own.bounds())?;
+    let camera = view.camera(own.box_bounds())?;
     let is_floating = lines.engine == SurfaceEngine::FloatingHorizon;
     let is_wanted = lines.smoothness_mm > 0.0 && !lines.mesh && !is_floating;
     let sheets = if is_wanted && lines.has_grid_lines() { surface.jets() } else { Vec::new() };
@@ -80,7 +80,7 @@ pub(super) fn sample(
         torn = surface.sample_torn(places.clone(), heights, gap)?;
     }
     let own = torn;
-    let (mut camera, mut factors) = (view.camera(own.bounds())?, own.factors());
+    let (mut camera, mut factors) = (view.camera(own.box_bounds())?, own.factors());
     let mut paper = seen(&own, &camera);
     let mut refined: Option<SampledSurface> = None;
     let mut n_jets = 0;
@@ -97,7 +97,7 @@ pub(super) fn sample(
         let most = if by_grid { MOST_SAMPLES } else { MOST_MESH_SAMPLES };
         let gap = closes(&paper, &own);
         let sampled = surface.sample_torn(divided(&places, needs, most), heights, gap)?;
-        camera = view.camera(sampled.bounds())?;
+        camera = view.camera(sampled.box_bounds())?;
         paper = seen(&sampled, &camera);
         let before = std::mem::replace(&mut factors, sampled.factors());
         refined = Some(sampled);
@@ -106,7 +106,7 @@ pub(super) fn sample(
         }
     }
     let sampled = refined.unwrap_or(own);
-    let camera = view.camera(sampled.bounds())?;
+    let camera = view.camera(sampled.box_bounds())?;
     let paper = seen(&sampled, &camera);
     let factors = sampled.factors();
     let certifier =

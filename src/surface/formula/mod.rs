@@ -36,7 +36,7 @@ pub use parameter::{Parameter, ParameterError};
 pub use parameter_list::{MAX_VALUES, ParameterList};
 pub use tape::{CONSTANTS, FUNCTIONS};
 
-use tape::Tape;
+use tape::{Op, Tape};
 use thiserror::Error;
 
 /// Maximum length of a formula in bytes.
@@ -195,6 +195,16 @@ impl Formula {
     /// The text that it was parsed from.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The same with values below `low` raised to it, and those above `high` lowered.
+    #[must_use]
+    pub(super) fn clamped(&self, low: f64, high: f64) -> Self {
+        let mut clamped = self.clone();
+        for op in [Op::Constant(low), Op::Constant(high), Op::Clamp] {
+            clamped.tape.push(op);
+        }
+        clamped
     }
 
     /// The value at one pair of variables; NaN where the formula is undefined.

@@ -578,7 +578,20 @@ fn heights_outside_a_range_are_cut_off() {
     assert!(!text(&cut.stderr).contains("grows"), "{}", text(&cut.stderr));
     let empty = run(&["x+y", "--z", "20:30", "-o", "none.svg"]);
     assert_eq!(empty.status.code(), Some(1));
+    assert!(text(&empty.stderr).contains("heights from -10 to 10: none of them is in --z"));
     assert!(!folder.path().join("none.svg").exists());
-    let turned = run(&["x+y", "--z", "3:1"]);
-    assert!(text(&turned.stderr).contains("the first number must be the smaller one"));
+    let drawn = |more: &[&str]| {
+        let output = run(&[&["x+y", "--samples", "9", "-o", "a.svg"], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let svg = std::fs::read_to_string(folder.path().join("a.svg")).unwrap();
+        (svg, text(&output.stderr))
+    };
+    let (svg, said) = drawn(&["--z", "3:1", "--pen", "cut=2"]);
+    assert!(svg.contains("cut") && !said.contains("warning"), "{said}");
+    let (_, said) = drawn(&["--z", "1:3", "--z-outside", "clamp", "--pen", "cut=2"]);
+    assert!(said.contains("--pen cut=… draws nothing"), "{said}");
+    let (_, said) = drawn(&["--z-outside", "clamp"]);
+    assert!(said.contains("--z-outside has no effect without --z"), "{said}");
+    let none = run(&["x+y", "--z", "3:3"]);
+    assert!(text(&none.stderr).contains("the two numbers must be different"));
 }

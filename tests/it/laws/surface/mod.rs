@@ -1,10 +1,12 @@
 //! Function surfaces: engines against brute force and closed forms.
 
+mod base_levels;
 mod brute;
 mod damage;
 mod drawing;
 mod floating_horizon;
 mod height_files;
+mod height_range;
 mod heights;
 mod labels;
 mod legend;
