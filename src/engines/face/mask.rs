@@ -267,3 +267,49 @@ impl View<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Projection;
+    use crate::model::mesh::{Mesh, PolygonSoup};
+
+    /// In a parallel view the eye's distance changes no image, but how it is rounded.
+    #[test]
+    fn what_shows_from_near_is_not_hidden_from_far() {
+        let mut soup = PolygonSoup::default();
+        soup.positions.extend([DVec3::ZERO, DVec3::X, DVec3::Y]);
+        soup.push_face(&[0, 1, 2]);
+        let scene = Scene::new(Mesh::new(soup).expect("a mesh").0);
+        let camera = |distance: f64| {
+            let eye = distance * DVec3::new(-4.0, 3.0, 0.0);
+            Camera::new(eye, DVec3::ZERO, DVec3::Z, Projection::Orthographic).expect("a camera")
+        };
+        let (near, far) = (camera(1.0), camera(2f64.powi(40)));
+        let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(&far);
+        let view =
+            View { scene: &scene, easel: Easel::new(&scene, &far), planes: &planes, near: None };
+        // Covered up to 0.5 in the image, to the right.
+        let mut occupancy = Occupancy::new(DVec2::NEG_ONE, DVec2::ONE);
+        let right = 0.5 + 1.5 * occupancy.rim();
+        let (low, high) = (DVec2::new(-0.7, -0.7), DVec2::new(right, 0.7));
+        occupancy.cover(&[low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]);
+
+        let (mut n_beyond, mut n_hidden) = (0, 0);
+        for k in 0..4000 {
+            let part = |prime: f64| (f64::from(k) * prime).fract();
+            // Full mantissas around the border of what is covered, and well inside.
+            let across =
+                if k % 2 == 0 { 0.5 + 2e-3 * (part(0.754_877) - 0.5) } else { 0.4 * part(0.3) };
+            let along = part(0.569_840) - 0.5;
+            let right = near.frame().right;
+            let point = right * across + near.frame().forward * along;
+            let is_hidden = view.hides(&occupancy, point, point);
+            let is_beyond = near.image(point).x > 0.5 + 1e-9;
+            assert!(!(is_hidden && is_beyond), "{point} is seen at {}", near.image(point));
+            n_beyond += u32::from(is_beyond);
+            n_hidden += u32::from(is_hidden);
+        }
+        assert!(n_beyond > 500 && n_hidden > 500, "{n_beyond} beyond, {n_hidden} hidden");
+    }
+}

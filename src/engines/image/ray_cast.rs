@@ -150,3 +150,49 @@ fn bounds(triangle: &RasterTriangle) -> (DVec2, DVec2) {
     let [a, b, c] = triangle.corners;
     (a.min(b).min(c), a.max(b).max(c))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::depth::DepthPlane;
+    use super::*;
+    use glam::DVec3;
+
+    /// Slim, steep triangles as near as where a step of depth begins: rounding takes some pixels over it.
+    #[test]
+    fn no_pixel_is_nearer_than_its_box() {
+        let mut state = 1u64;
+        let mut below = |n: u64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % n
+        };
+        let (mut n_pixels, mut n_nearer) = (0, 0);
+        for _ in 0..5000 {
+            // A step of depth begins half a step above 1: a long side is just below it.
+            let below_step = 1.0 + 2f64.powi(-41) - f64::EPSILON;
+            let deeper = 2f64.powi(-39) * below(1 << 31) as f64;
+            let corners = [
+                DVec3::new(0.5, 0.5, below_step),
+                DVec3::new(24.7, 24.7, below_step),
+                DVec3::new(24.75, 24.65, below_step - deeper),
+            ];
+            let triangle = RasterTriangle {
+                corners: corners.map(DVec3::truncate),
+                plane: DepthPlane::through(corners),
+                triangle: 0,
+            };
+            let tree = RayTree::new(vec![(0, triangle)]);
+            let at_corners = corners.map(|corner| Depth::of(corner.z)).into_iter().max();
+            for at in 1..24 {
+                if covers(&triangle, at, at) {
+                    let depth = triangle.plane.at(at, at);
+                    assert!(depth <= tree.nodes[0].nearest, "{corners:?} at {at}");
+                    n_pixels += 1;
+                    n_nearer += u32::from(Some(depth) > at_corners);
+                }
+            }
+        }
+        assert!(n_pixels > 50_000 && n_nearer > 100, "{n_nearer} of {n_pixels}");
+    }
+}

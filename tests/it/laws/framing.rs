@@ -5,7 +5,7 @@ use hiddenline::stages::axes::{
     Axes, AxesBox, AxesLayout, AxesSize, AxesStyle, Economy, Titles, text,
 };
 use hiddenline::stages::camera::framing::{NamedView, Standpoint, View};
-use hiddenline::stages::camera::{Camera, Projection};
+use hiddenline::stages::camera::{Camera, CameraError, Projection};
 use hiddenline::stages::strokes::StrokeKind;
 use hiddenline::stages::surface::AxisScale;
 
@@ -124,4 +124,29 @@ fn numbers_on_the_z_axis_are_heights_before_scaling() {
     let found = feet(&lines_and_text(bounds, 1.0, &camera).0);
     assert!((found[1] - 5.0).abs() < 1e-9, "{found:?}");
     assert!(dvec2(found[0], 0.0).length() < 1e-9);
+}
+
+#[test]
+fn the_eye_is_where_the_sphere_around_the_target_fills_the_view() {
+    let box_around = (DVec3::ZERO, dvec3(2.0, 3.0, 6.0));
+    // The farthest corner is 7 away from either end of the diagonal, and 3.5 from its middle.
+    for (target, radius) in
+        [(dvec3(1.0, 1.5, 3.0), 3.5), (DVec3::ZERO, 7.0), (dvec3(2.0, 3.0, 6.0), 7.0)]
+    {
+        let view = View::from_angles(30.0, 20.0).target(target).fov_deg(60.0);
+        let camera = view.camera(box_around).expect("a camera");
+        let distance = camera.forward().length();
+        // Rounded up to a few binary digits.
+        assert!((1.0..1.04).contains(&(distance / (2.0 * radius))), "{target}: {distance}");
+    }
+}
+
+#[test]
+fn a_field_of_view_is_less_than_half_of_all_directions() {
+    for (fov_deg, expected) in [(179.0, true), (180.0, false), (200.0, false), (0.0, false)] {
+        let projection = Projection::Perspective { fov_deg, near: 1e-6 };
+        let camera = Camera::new(DVec3::ZERO, DVec3::Y, DVec3::Z, projection);
+        assert_eq!(camera.is_ok(), expected, "{fov_deg}");
+        assert!(expected || camera == Err(CameraError::FieldOfView));
+    }
 }

@@ -8,7 +8,8 @@ use crate::scenes::Rng;
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
 use hiddenline::stages::predicates::{
-    Corner, CornerPlace, CutPlane, Estimate, PiercePoint, PlaneName, Planes, Sight, Sign, Solid,
+    Corner, CornerPlace, CutPlane, Estimate, FreePlane, PiercePoint, PlaneName, Planes, Sight,
+    Sign, Solid,
 };
 
 /// A number from −1 to 1 with all its bits in use.
@@ -70,6 +71,10 @@ fn a_nearly_coplanar_vertex_lies_on_the_side_that_integers_say() {
         n_sides[(found + 1) as usize] += 1;
         let solid = Solid::new(&positions);
         assert_eq!(as_number(solid.side_of([0, 1, 2], 3)), -found, "{positions:?}");
+        // Floating point says nothing, or the truth.
+        let quick = solid.quick_plane(positions[0], positions[1], positions[2]);
+        let certain = solid.certain_side(&quick, positions[3]);
+        assert!(certain == 0 || certain == found, "{certain}: {positions:?}");
 
         let eye = positions[3];
         let near = Projection::Perspective { fov_deg: 40.0, near: DEFAULT_NEAR };
@@ -316,4 +321,39 @@ fn points_on_one_sight_line_have_one_image_even_where_products_vanish() {
         let sight = Sight::new(&points, &camera(eye, scale * DVec3::X, DEFAULT_NEAR));
         assert!(sight.same_image(0, 1), "2^{exponent}");
     }
+}
+
+#[test]
+fn places_where_planes_cut_an_edge_are_in_their_true_order() {
+    let (mut rng, mut n_checked) = (Rng(9), 0);
+    for _ in 0..3000 {
+        let ends = [point(&mut rng), point(&mut rng)];
+        let middle = ends[0] + 0.5 * (1.0 + number(&mut rng)) * (ends[1] - ends[0]);
+        // Both through one point, but for rounding.
+        let planes = [0; 2].map(|_| {
+            let normal = point(&mut rng);
+            FreePlane { normal, offset: normal.dot(middle) }
+        });
+        let is_cut =
+            |plane: &FreePlane| plane.side(ends[0]).times(plane.side(ends[1])) == Sign::Negative;
+        if !planes.iter().all(is_cut) {
+            continue;
+        }
+        let k = common_exponent(ends.iter().flat_map(|p| p.to_array()));
+        let whole = |p: DVec3, k: i32| p.to_array().map(|x| scaled(x, k));
+        let parts = planes.map(|FreePlane { normal, offset }| {
+            let of_normal = common_exponent(normal.to_array());
+            let [of_p, of_q] = ends.map(|end| {
+                dot(&whole(normal, of_normal), &whole(end, k)) - scaled(offset, of_normal + k)
+            });
+            Ratio::new(of_p.clone(), of_p - of_q)
+        });
+        let found = planes.map(|plane| PiercePoint::on_plane(&ends, [0, 1], plane));
+        let expected = parts[0].cmp(&parts[1]);
+        let is_rising = ends[0].x < ends[1].x;
+        let expected = if is_rising { expected } else { expected.reverse() };
+        assert_eq!(found[0].order(&found[1]), expected, "{ends:?}, {planes:?}");
+        n_checked += 1;
+    }
+    assert!(n_checked > 1000, "{n_checked}");
 }

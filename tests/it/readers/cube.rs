@@ -231,3 +231,13 @@ fn content_tells_the_format_where_the_name_does_not() {
     assert_eq!(good("MODEL.OBJ", one).format, ModelFormat::Obj);
     assert!(read_bytes("x.stl", one.as_bytes(), Some(ModelFormat::Obj)).is_ok());
 }
+
+#[test]
+fn whole_numbers_in_ply_keep_their_range() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty ushort x\nproperty short y\n\
+                property uchar z\nelement face 1\nproperty list uchar ushort vertex_indices\n\
+                end_header\n40000 -5 200\n65535 1 0\n0 -30000 255\n3 0 1 2\n";
+    let mesh = good("range.ply", text).mesh;
+    let expected = [[40000.0, -5.0, 200.0], [65535.0, 1.0, 0.0], [0.0, -30000.0, 255.0]];
+    assert_eq!(mesh.positions(), expected.map(DVec3::from_array));
+}

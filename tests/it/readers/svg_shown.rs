@@ -370,3 +370,56 @@ fn control_characters_of_labels_are_kept_and_heeded() {
     assert_eq!(plotted, [true, true, true, false, true]);
     assert!(file.plot.layers[1].pauses() && !file.plot.layers[0].pauses());
 }
+
+#[test]
+fn what_groups_say_of_display_and_opacity_holds_whatever_their_parts_say() {
+    assert_ink("<g display='none'><path display='inline' d='M0 10h30'/></g>", 0, 0.0);
+    let options = SvgOptions { occlude: true, ..SvgOptions::default() };
+    let ink = |opacity: f64| {
+        let text = format!(
+            "<path d='M0 50h100'/><g opacity='{opacity}'>\
+             <rect x='40' y='40' width='20' height='20' fill='white' opacity='1'/></g>"
+        );
+        length(&read(&page(&text), &options).unwrap())
+    };
+    assert!((ink(1.0) - 160.0).abs() < 0.1 && (ink(0.5) - 180.0).abs() < 0.1);
+}
+
+#[test]
+fn ink_on_the_border_of_a_fill_is_not_hidden() {
+    let options = SvgOptions { occlude: true, ..SvgOptions::default() };
+    let square = "<rect x='40' y='40' width='20' height='20' fill='white' stroke='none'/>";
+    let ink = |y: f64| {
+        let text = format!("<path d='M40 {y}h20'/>{square}");
+        length(&read(&page(&text), &options).unwrap())
+    };
+    assert!((ink(40.0) - ink(41.0) - 20.0).abs() < 0.1, "{} and {}", ink(40.0), ink(41.0));
+}
+
+#[test]
+fn skewing_by_css_turns_the_axis_that_it_names() {
+    assert_line(
+        "<path style='transform: skew(45deg, 0deg)' d='M0 10h10'/>",
+        (10.0, 10.0),
+        (20.0, 10.0),
+    );
+    assert_line(
+        "<path style='transform: skew(0deg, 45deg)' d='M0 10h10'/>",
+        (0.0, 10.0),
+        (10.0, 20.0),
+    );
+}
+
+#[test]
+fn dashes_that_keep_their_size_keep_their_offset() {
+    let file = shown(
+        "<g transform='scale(2)'><path vector-effect='non-scaling-stroke' stroke-dasharray='10 10' \
+         stroke-dashoffset='10' d='M0 5h20'/></g>",
+    );
+    let found: Vec<[f64; 2]> =
+        strokes(&file).iter().map(|dash| [dash[0].x, dash[dash.len() - 1].x]).collect();
+    // A pixel is 25.4 mm / 96.
+    for (dash, expected) in found[0].iter().zip([10.0, 20.0]) {
+        assert!((dash - expected * 25.4 / 96.0).abs() < 1e-9, "{found:?}");
+    }
+}

@@ -120,6 +120,45 @@ fn of_faces_in_one_plane_the_first_is_seen() {
 }
 
 #[test]
+fn of_faces_in_the_plane_where_two_objects_touch_the_first_is_seen_from_both_sides() {
+    // Each has a square in the plane x = 1 and an arm to one side.
+    let left = [
+        [[1.0, 0.0, 0.0], [1.0, 4.0, 0.0], [1.0, 4.0, 4.0], [1.0, 0.0, 4.0]],
+        [[1.0, 0.0, 0.0], [1.0, 0.0, 4.0], [0.0, 0.0, 4.0], [0.0, 0.0, 0.0]],
+    ];
+    let right = [
+        [[1.0, 1.0, 1.0], [1.0, 5.0, 1.0], [1.0, 5.0, 5.0], [1.0, 1.0, 5.0]],
+        [[1.0, 5.0, 1.0], [1.0, 5.0, 5.0], [2.0, 5.0, 5.0], [2.0, 5.0, 1.0]],
+    ];
+    for faces in [[left, right], [right, left]] {
+        for x in [-3.0, 3.0] {
+            let mut model = Model::default();
+            faces.as_flattened().iter().for_each(|face| model.face(face));
+            let sight = orthographic([x, 1.0, -1.0], [0.0, 0.0, 1.0]);
+            assert!(judge(&model.seen_by("touching", sight), 40) > 500);
+        }
+    }
+}
+
+#[test]
+fn what_the_near_plane_cuts_away_hides_nothing() {
+    // The eye is at the origin and looks along y; the near plane is y = 1. Two triangles share a side
+    // before it, right in front of a sliver.
+    let (left, right) = ([-1.0, 0.6, 0.0], [1.0, 0.6, 0.0]);
+    let mut model = Model::default();
+    model.face(&[left, right, [0.0, 3.0, 3.0]]);
+    model.face(&[right, left, [0.0, 0.5, -0.4]]);
+    model.face(&[[-2.5, 5.0, 0.001], [2.5, 5.0, 0.001], [0.0, 5.0, 0.002]]);
+    let sight = perspective([0.0, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0);
+    let scene = model.seen_by("a cut wall", sight);
+    let (built, camera) = (Scene::new(mesh(&scene)), camera(&scene));
+    for (engine, solve) in [EXACT].into_iter().chain(ENGINES) {
+        let painting = solve(&built, &camera);
+        assert!(painting.pieces().any(|piece| piece.face == 2), "{engine}");
+    }
+}
+
+#[test]
 fn the_painting_of_random_scenes_is_what_exact_rays_meet() {
     let n = number_of_scenes(300);
     let mut judged = 0;

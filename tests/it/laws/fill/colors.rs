@@ -115,6 +115,24 @@ fn what_is_near_keeps_its_color_and_what_is_far_pales() {
 }
 
 #[test]
+fn faces_pale_evenly_with_their_distance() {
+    let mut model = Model::default();
+    for (k, z) in [0.0, 6.0, 8.0].into_iter().enumerate() {
+        let x = 3.0 * k as f64;
+        model.face(&[[x, 0.0, z], [x + 2.0, 0.0, z], [x + 2.0, 2.0, z], [x, 2.0, z]]);
+    }
+    let (scene, camera) =
+        built(&model.seen_by("steps", orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0])));
+    let (light, paint) = (LightSource::From(DVec3::Z), Some([55, 0, 155]));
+    let options = FillOptions { light, paint, depth_cue: 0.8, ..FillOptions::default() };
+    let filled = fill(&scene, &camera, &options).unwrap();
+    let mut colors: Vec<[u8; 3]> = filled.layers[0].fills.iter().map(|area| area.color).collect();
+    colors.sort();
+    // Eight tenths of the way to white at the farthest, and a quarter of that two steps of eight away.
+    assert_eq!(colors, [[55, 0, 155], [95, 51, 175], [215, 204, 235]]);
+}
+
+#[test]
 fn both_sides_of_a_face_are_lit_alike() {
     let palette = Some(Palette::Grays(2));
     let options = FillOptions { palette, ..FillOptions::default() };

@@ -90,6 +90,25 @@ fn windows_are_quartered_until_each_is_simple() {
 }
 
 #[test]
+fn a_window_is_simple_where_one_face_is_in_front_of_all_others() {
+    // Each plane cuts the other face, but beside the window; there the first face is nearer: it is at
+    // 2 or more, and the second one nowhere above 1.8.
+    let mut model = Model::default();
+    model.face(&[[0.0, 0.0, 10.0], [8.0, 0.0, 2.0], [8.0, 16.0, 2.0], [0.0, 16.0, 10.0]]);
+    let height = |x: f64, y: f64| 0.5 * x + 1.9 * y - 10.0;
+    model.face(
+        &[[0.0, 0.0], [16.0, 0.0], [16.0, 2.0], [0.0, 2.0]].map(|[x, y]| [x, y, height(x, y)]),
+    );
+    let sight = orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+    let (scene, camera) = built(&model.seen_by("two slopes", sight));
+    let window = Some((DVec2::ZERO, DVec2::splat(8.0)));
+    let options = WarnockOptions { leaf: Some(1.0), window, subdivision: Subdivision::Regular };
+    let (painting, counts) = warnock::solve(&scene, &camera, &options).unwrap();
+    assert_eq!([counts.windows, counts.covered], [1, 1], "{counts:?}");
+    assert!(painting.pieces().all(|piece| piece.face == 0));
+}
+
+#[test]
 fn a_tree_of_planes_grows_as_boxes_beside_each_other_do() {
     let nodes = |n: u32| {
         let mut model = Model::default();

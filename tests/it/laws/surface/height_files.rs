@@ -301,6 +301,20 @@ fn npz_archives_tell_heights_from_coordinates_or_say_why_not() {
     assert!(error(&whole[..whole.len() / 2]).starts_with("NPZ: "));
 }
 
+#[test]
+fn npz_archives_of_many_small_files_cannot_fill_the_memory() {
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    archive.start_file("0.npy", zip::write::SimpleFileOptions::default()).expect("a file");
+    std::io::Write::write_all(&mut archive, &vec![0; 30 << 20]).expect("written");
+    // None of them is an array, which alone is no reason to stop.
+    for k in 1..40 {
+        archive.deep_copy_file("0.npy", &format!("{k}.npy")).expect("a copy");
+    }
+    let bytes = archive.finish().expect("an archive").into_inner();
+    assert!(bytes.len() < 4 << 20, "{}", bytes.len());
+    assert!(error(bytes).ends_with("bytes when unpacked"));
+}
+
 /// An uncompressed gray TIFF in little-endian order: bits and sample format (1 unsigned, 2 signed,
 /// 3 float) of its numbers, and the text of GDAL's tag.
 pub(super) fn tiff(

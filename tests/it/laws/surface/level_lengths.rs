@@ -274,3 +274,13 @@ fn the_last_line_of_every_k_reaches_the_rim_of_a_domain() {
         assert_eq!(places, expected, "{domain}");
     }
 }
+
+#[test]
+fn a_rim_through_samples_lies_on_them() {
+    let formula = |text: &str| Formula::parse(text, Variables::Plane).expect("a formula");
+    let (zero, domain) = (formula("0"), formula("x <= 2"));
+    let size = (6, 5);
+    let grid = TrimmedGrid::sample(&zero, Some(&domain), (0.0, 5.0), (0.0, 4.0), size);
+    let grid = grid.expect("a grid");
+    assert!(grid.rim().count() >= 5 && grid.rim().all(|p| p.x == 2.0));
+}

@@ -1,5 +1,7 @@
 //! Max-Min patches against brute force in integers.
 
+use std::collections::HashMap;
+
 use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::classify::ViewedScene;
@@ -255,6 +257,23 @@ fn rough_surfaces_equal_brute_force_in_orthographic_views() {
     }
 }
 
+/// For each grid line between two samples what part of it an engine for meshes, which decides exactly,
+/// finds visible.
+fn visible_by_mesh(grid: &Grid, camera: &Camera) -> HashMap<[u32; 2], f64> {
+    let mut mesh = LinedMesh::default();
+    let all = LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: false };
+    mesh.push_grid(grid, &all);
+    let surface = mesh.into_scene().expect("a scene");
+    let view = ViewedScene::with_edges(&surface.scene, camera, surface.lines.clone());
+    let (found, ..) = engine(&view, LineEngine::Roberts, &VisibilityOptions::EXACT);
+    let visible = |k: usize| -> f64 {
+        found.spans(k).iter().filter(|span| span.qi == 0).map(|span| span.t1 - span.t0).sum()
+    };
+    let topology = surface.scene.topology();
+    let ends = surface.lines.iter().map(|line| topology.edge(line.edge));
+    ends.enumerate().map(|(k, ends)| (ends, visible(k))).collect()
+}
+
 /// An eye next to the plane of a grid line, as decimal fractions have it.
 #[test]
 fn an_eye_nearly_in_the_plane_of_a_grid_line_loses_nothing_of_it() {
@@ -265,17 +284,8 @@ fn an_eye_nearly_in_the_plane_of_a_grid_line_loses_nothing_of_it() {
     let camera = camera(dvec3(-0.3, 5.0, 2.5), DVec3::ZERO, PERSPECTIVE);
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("pieces");
 
-    let mut mesh = LinedMesh::default();
-    let all = LatticeLines { along_rows: true, along_columns: true, every: 1, triangles: false };
-    mesh.push_grid(&grid, &all);
-    let surface = mesh.into_scene().expect("a scene");
-    let view = ViewedScene::with_edges(&surface.scene, &camera, surface.lines.clone());
-    let settings = VisibilityOptions::EXACT;
-    let (expected, ..) = engine(&view, LineEngine::AllPairs, &settings);
-    let visible = |k: usize| -> f64 {
-        expected.spans(k).iter().filter(|span| span.qi == 0).map(|span| span.t1 - span.t0).sum()
-    };
-    let expected: f64 = (0..expected.len()).map(visible).sum();
+    let expected = visible_by_mesh(&grid, &camera);
+    let expected: f64 = expected.values().sum();
     let found: f64 = pieces.iter().map(|piece| piece.t1 - piece.t0).sum();
     assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
 }
@@ -307,4 +317,63 @@ fn only_cells_between_the_eye_and_the_near_plane_are_in_its_way() {
     assert!(!is_clear(0.25, 0.75), "between both");
     assert!(!is_clear(0.5, 2.0), "across the near plane");
     assert!(!is_clear(-0.5, 0.5), "across the eye");
+}
+
+/// A plane seen along itself, but for rounding: all its lines have one image, and which of two is in front
+/// only exact arithmetic tells.
+fn plane_along_itself(fraction: &mut impl FnMut() -> f64, n: usize) -> (Grid, Camera) {
+    let mut lines = || (0..n).map(|k| k as f64 + 0.3 * fraction()).collect::<Vec<f64>>();
+    let (xs, ys) = (lines(), lines());
+    let (along, slope) = (dvec3(0.3 + fraction(), 0.3 + fraction(), 0.0), fraction());
+    let heights =
+        ys.iter().flat_map(|y| xs.iter().map(move |x| slope * (along.x * x + along.y * y)));
+    let grid = Grid::new(xs.clone(), ys.clone(), heights.collect()).expect("a grid");
+    let forward = along.with_z(slope * along.length_squared());
+    (grid, camera(DVec3::ZERO, forward, Projection::Orthographic))
+}
+
+/// For each edge what part of it is visible.
+fn visible_parts(pieces: &GridPieces) -> Vec<f64> {
+    let mut found = vec![0.0; pieces.n_edges()];
+    pieces.iter().for_each(|piece| found[piece.edge as usize] += piece.t1 - piece.t0);
+    found
+}
+
+#[test]
+fn planes_seen_nearly_along_themselves_equal_exact_engines() {
+    let mut dice = Dice(29);
+    let mut fraction = move || dice.roll(1 << 31) as f64 / f64::from(1u32 << 31);
+    let (mut n_hidden, mut n_visible) = (0, 0);
+    for round in 0..3 {
+        let (grid, camera) = plane_along_itself(&mut fraction, 14);
+        let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("pieces");
+        let expected = visible_by_mesh(&grid, &camera);
+        for (edge, found) in (0..).zip(visible_parts(&pieces)) {
+            let expected = expected[&pieces.ends(edge)];
+            assert!((found - expected).abs() < 1e-6, "round {round}, {edge}: {found}, {expected}");
+            n_hidden += usize::from(expected < 0.5);
+            n_visible += usize::from(expected > 0.5);
+        }
+    }
+    assert!(n_hidden > 50 && n_visible > 50, "{n_hidden} hidden, {n_visible} visible");
+}
+
+#[test]
+fn planes_seen_nearly_along_themselves_are_the_same_in_any_order_and_number_of_strips() {
+    let mut dice = Dice(31);
+    let mut fraction = move || dice.roll(1 << 31) as f64 / f64::from(1u32 << 31);
+    for round in 0..4 {
+        let (grid, camera) = plane_along_itself(&mut fraction, 44);
+        let solve = |order, cells| {
+            let pieces = max_min::solve_in_strips(&grid, &camera, order, cells).expect("pieces");
+            visible_parts(&pieces)
+        };
+        let expected = solve(CellOrder::Rows, 100);
+        for (order, cells) in [(CellOrder::Rows, 10_000), (CellOrder::Diagonals, 10_000)] {
+            let found = solve(order, cells);
+            let farthest = expected.iter().zip(found).map(|(a, b)| (a - b).abs());
+            let farthest = farthest.fold(0.0, f64::max);
+            assert!(farthest < 1e-6, "round {round}, {order:?}, {cells}: {farthest}");
+        }
+    }
 }

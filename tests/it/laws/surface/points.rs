@@ -51,6 +51,10 @@ fn points_at_one_place_are_merged_as_asked() {
     assert_eq!(merged(Duplicates::Max), Ok((3, 8.0, vec![1, 2, 5])));
     let clash = PointsError::TwoHeights { points: [0, 2], x: 1.0, y: 1.0, heights: [4.0, 8.0] };
     assert_eq!(merged(Duplicates::Error), Err(clash));
+    // Of several such places the one is named that shows first in the file.
+    let mut two = read("5 5 0\n1 1 0\n1 1 1\n0 0 0\n5 5 1\n0 0 1\n");
+    let first = PointsError::TwoHeights { points: [1, 2], x: 1.0, y: 1.0, heights: [0.0, 1.0] };
+    assert_eq!(two.merge(Duplicates::Error), Err(first));
     let mut equal = read("0 0 1\n1 0 1\n0 0 1\n");
     assert_eq!(equal.merge(Duplicates::Error), Ok(1));
     assert_eq!(equal.points, [DVec3::Z, dvec3(1.0, 0.0, 1.0)]);
