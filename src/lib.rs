@@ -220,7 +220,7 @@ pub use draw::surface::{
     Certificate, LabelSide, Labels, Legend, Levels, SurfaceEngine, SurfaceLines, SurfaceNote,
 };
 pub use engines::surface::CellOrder;
-pub use surface::formula::{Formula, Parameter, ParameterList};
+pub use surface::formula::{Formula, Parameter, ParameterList, Variables};
 pub use surface::{
     Aspect, FormulaSheet, Grid, HeightField, HeightOptions, Outside, SampledSurface, Surface,
 };

@@ -23,6 +23,14 @@ pub struct Plot {
 }
 
 impl Plot {
+    /// The same with other layers, without a copy of its own.
+    #[must_use]
+    pub fn with_layers(&self, layers: Vec<Layer>) -> Self {
+        let Self { width_mm, height_mm, title, source, .. } = self;
+        let (title, source) = (title.clone(), source.clone());
+        Self { width_mm: *width_mm, height_mm: *height_mm, title, source, layers }
+    }
+
     /// The layers that machines draw: all but those that [`Layer::is_plotted`] excludes.
     pub fn plotted_layers(&self) -> impl Iterator<Item = &Layer> {
         self.layers.iter().filter(|layer| layer.is_plotted())
@@ -54,6 +62,21 @@ pub struct Layer {
 }
 
 impl Layer {
+    /// The same with other lines, without a copy of its own.
+    #[must_use]
+    pub fn with_lines(&self, lines: Polylines) -> Self {
+        let Self { number, name, label, pen, dash_mm, fills, .. } = self;
+        Self {
+            number: *number,
+            name: name.clone(),
+            label: label.clone(),
+            pen: pen.clone(),
+            lines,
+            dash_mm: *dash_mm,
+            fills: fills.clone(),
+        }
+    }
+
     /// The label in SVG.
     pub fn label(&self) -> Cow<'_, str> {
         match &self.label {

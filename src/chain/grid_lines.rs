@@ -15,6 +15,10 @@ use crate::strokes::{GridFamily, StrokeKind, Strokes, SurfacePart};
 use crate::surface::formula::Axis;
 use crate::surface::{Grid, Places};
 
+/// So many grid lines are chained at a time, in parallel: many small lists at once would leave much memory
+/// in use after them.
+const TOGETHER: usize = 128;
+
 /// Which grid lines are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridLines<'a> {
@@ -71,25 +75,37 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLi
     let mut drawing = Strokes::default();
     for (family, lines_of_family) in &families {
         let part = SurfacePart { sheet: 1, level: 0, family: Some(*family) };
-        let chains: Vec<Chains> = lines_of_family
-            .par_iter()
-            .map(|line| line.chains(grid, pieces, &projector, lines))
-            .collect();
-        let strokes: Vec<(LineStroke, &[DVec2])> =
-            chains.iter().zip(0..).flat_map(|(chains, line)| chains.strokes(line)).collect();
+        let mut points: Vec<DVec2> = Vec::new();
+        let mut strokes: Vec<LineStroke> = Vec::new();
+        let mut ends = Vec::new();
+        let mut number = 0;
+        for block in lines_of_family.chunks(TOGETHER) {
+            let chains: Vec<Chains> =
+                block.par_iter().map(|line| line.chains(grid, pieces, &projector, lines)).collect();
+            for (chains, line) in chains.iter().zip(number..) {
+                for (stroke, its_points) in chains.strokes(line) {
+                    strokes.push(stroke);
+                    points.extend_from_slice(its_points);
+                    ends.push(points.len());
+                }
+            }
+            number += block.len() as u32;
+        }
+        let points_of = |stroke: usize| {
+            let start = if stroke == 0 { 0 } else { ends[stroke - 1] };
+            points[start..ends[stroke]].iter().copied()
+        };
         if lines.separate {
-            for (_, points) in &strokes {
-                drawing.push_part(StrokeKind::Grid, part, points.iter().copied());
+            for stroke in 0..strokes.len() {
+                drawing.push_part(StrokeKind::Grid, part, points_of(stroke));
             }
             continue;
         }
-        let ends: Vec<LineStroke> = strokes.iter().map(|(stroke, _)| *stroke).collect();
-        for (stroke, is_backwards) in order(&ends) {
-            let points = strokes[stroke].1.iter().copied();
+        for (stroke, is_backwards) in order(&strokes) {
             if is_backwards {
-                drawing.push_part(StrokeKind::Grid, part, points.rev());
+                drawing.push_part(StrokeKind::Grid, part, points_of(stroke).rev());
             } else {
-                drawing.push_part(StrokeKind::Grid, part, points);
+                drawing.push_part(StrokeKind::Grid, part, points_of(stroke));
             }
         }
     }

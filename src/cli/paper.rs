@@ -1,5 +1,6 @@
 //! From a drawing to a file: placed on the page, joined and ordered, written, and reported.
 
+use std::borrow::Borrow;
 use std::error::Error;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -201,10 +202,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run.
+    /// Puts `drawing` on paper, or writes its strokes as JSON, and ends the run. Strokes that are given away
+    /// are dropped as soon as they are on paper.
     pub(super) fn draw(
         self,
-        drawing: &Strokes,
+        drawing: impl Borrow<Strokes>,
         sheet: &PlacedPage,
         plot: PlotOptions,
         usual: &OptimizeOptions,
@@ -217,7 +219,7 @@ impl<'a> Run<'a> {
     pub(super) fn draw_to(
         mut self,
         path: Option<&Path>,
-        drawing: &Strokes,
+        drawing: impl Borrow<Strokes>,
         sheet: &PlacedPage,
         plot: PlotOptions,
         usual: &OptimizeOptions,
@@ -225,6 +227,8 @@ impl<'a> Run<'a> {
         if let Some(kept) = &mut self.kept {
             kept.sheet = Some(sheet.clone());
         }
+        let given = drawing;
+        let drawing = given.borrow();
         let PlacedPage { camera, page, .. } = sheet;
         let paper = page.paper.description();
         if self.output.format == Format::Json {
@@ -241,6 +245,7 @@ impl<'a> Run<'a> {
         self.progress.stage("placing");
         let seconds = &mut self.stats.seconds.write;
         let placed = timed(seconds, || page.plot(drawing, plot));
+        drop(given);
         if placed.cropped {
             let fitting = sheet.largest_scale(self.unit_mm);
             let hint = fitting.map(|scale| format!("; the largest scale that fits is {scale}"));

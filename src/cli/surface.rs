@@ -116,7 +116,8 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
         extent: drawing.extent,
         options: job.page,
     };
-    run.draw(&drawing.drawn.drawing, &sheet, plot_options(job, drawing.has_index_levels), &usual)
+    let plot = plot_options(job, drawing.has_index_levels);
+    run.draw(drawing.drawn.drawing, &sheet, plot, &usual)
 }
 
 /// Why the surface cannot be drawn, with the options that mend it.

@@ -15,7 +15,7 @@ use std::time::Duration;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::plot::{Layer, Plot, Polylines};
+use crate::plot::{Plot, Polylines};
 
 mod graph;
 pub use graph::{Graph, Joints};
@@ -197,10 +197,10 @@ pub fn optimize_watched(
             let ordered = joined_and_ordered(&layer.lines, None, options, &mut within);
             n_done += n;
             n_changes += ordered.n_changes;
-            Layer { lines: ordered.lines, ..layer.clone() }
+            layer.with_lines(ordered.lines)
         })
         .collect();
-    (Plot { layers, ..plot.clone() }, n_changes)
+    (plot.with_layers(layers), n_changes)
 }
 
 /// Takes the share of the work that is done, from 0 to 1.
@@ -243,7 +243,7 @@ fn joined_and_ordered(
                 && graph.length_mm() > (1.0 - HARDLY_ANY_INK) * lines.length_mm();
             if is_kept {
                 let kept = simplified(lines.iter().map(|line| (line.to_vec(), None)), options);
-                return order_watched(&kept, options.effort, &mut |share| {
+                return order_watched(kept, options.effort, &mut |share| {
                     watch(JOINED + (1.0 - JOINED) * share);
                 });
             }
@@ -257,7 +257,7 @@ fn joined_and_ordered(
             simplified(strokes.chain(dots), options)
         }
     };
-    order_watched(&joined, options.effort, &mut |share| watch(JOINED + (1.0 - JOINED) * share))
+    order_watched(joined, options.effort, &mut |share| watch(JOINED + (1.0 - JOINED) * share))
 }
 
 /// Edges that end at each vertex.
@@ -269,34 +269,38 @@ fn degrees(graph: &Graph) -> Vec<u32> {
     degrees
 }
 
+/// So many strokes are simplified at a time, since all of them may take up much memory.
+const TOGETHER: usize = 1024;
+
 /// Strokes with fewer points, without the shortest; joints are kept.
 fn simplified(
     strokes: impl Iterator<Item = (Vec<DVec2>, Option<Vec<bool>>)>,
     options: &OptimizeOptions,
 ) -> Polylines {
-    let strokes: Vec<_> = strokes.collect();
-    let lines: Vec<Vec<DVec2>> = strokes
-        .into_par_iter()
-        .map(|(points, joints)| {
-            let is_joint = |i: usize| joints.as_ref().is_some_and(|joints| joints[i]);
-            let mut line = simplify::simplify(&points, is_joint, options.simplify_mm);
-            if options.shortest_mm > 0.0 {
-                let length: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-                if length < options.shortest_mm {
-                    return Vec::new();
-                }
-                if let (Some(&first), Some(&last)) = (line.first(), line.last())
-                    && line.len() > 2
-                    && first != last
-                    && first.distance(last) < options.shortest_mm
-                {
-                    line.push(first);
-                }
+    let shortened = |(points, joints): (Vec<DVec2>, Option<Vec<bool>>)| {
+        let is_joint = |i: usize| joints.as_ref().is_some_and(|joints| joints[i]);
+        let mut line = simplify::simplify(&points, is_joint, options.simplify_mm);
+        if options.shortest_mm > 0.0 {
+            let length: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            if length < options.shortest_mm {
+                return Vec::new();
             }
-            line
-        })
-        .collect();
+            if let (Some(&first), Some(&last)) = (line.first(), line.last())
+                && line.len() > 2
+                && first != last
+                && first.distance(last) < options.shortest_mm
+            {
+                line.push(first);
+            }
+        }
+        line
+    };
     let mut result = Polylines::default();
-    lines.into_iter().for_each(|line| result.push(line));
+    let mut strokes = strokes.peekable();
+    while strokes.peek().is_some() {
+        let together: Vec<_> = strokes.by_ref().take(TOGETHER).collect();
+        let lines: Vec<Vec<DVec2>> = together.into_par_iter().map(shortened).collect();
+        lines.into_iter().for_each(|line| result.push(line));
+    }
     result
 }

@@ -44,13 +44,13 @@ pub struct Ordered {
 /// Deterministic unless `effort` is [`Effort::Within`]. O(n log n) plus the search that [`Effort`]
 /// describes; about 200 bytes for each stroke.
 pub fn order(lines: &Polylines, effort: Effort) -> Ordered {
-    order_watched(lines, effort, &mut |_| ())
+    order_watched(lines.clone(), effort, &mut |_| ())
 }
 
 /// As [`order`], and reports the share of the work that is done.
-pub(super) fn order_watched(lines: &Polylines, effort: Effort, watch: &mut Watch<'_>) -> Ordered {
+pub(super) fn order_watched(lines: Polylines, effort: Effort, watch: &mut Watch<'_>) -> Ordered {
     if effort == Effort::None || lines.len() < 2 {
-        return Ordered { lines: lines.clone(), n_changes: 0 };
+        return Ordered { lines, n_changes: 0 };
     }
     let begun = Instant::now();
     let strokes: Vec<&[DVec2]> = lines.iter().collect();

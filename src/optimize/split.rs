@@ -35,7 +35,7 @@ pub fn split_by_distance(plot: &Plot, distance_mm: f64, overlap_mm: Option<f64>)
                 _ => (format!("{}-part-{}", layer.name, i + 1), None),
             };
             let fills = if i == 0 { layer.fills.clone() } else { Default::default() };
-            layers.push(Layer { name, label, lines, fills, ..layer.clone() });
+            layers.push(Layer { name, label, fills, ..layer.with_lines(lines) });
         }
     }
     // Only a split changes the numbers, so that whole drawings keep the pens they were given.
@@ -44,7 +44,7 @@ pub fn split_by_distance(plot: &Plot, distance_mm: f64, overlap_mm: Option<f64>)
             layer.number = number;
         }
     }
-    Plot { layers, ..plot.clone() }
+    plot.with_layers(layers)
 }
 
 fn whole_strokes(lines: &Polylines, distance_mm: f64) -> Vec<Polylines> {

@@ -123,7 +123,7 @@ pub fn crop_to(plot: Plot, [low, high]: [DVec2; 2]) -> Cropped {
             lost_mm += (layer.lines.length_mm() - lines.length_mm()).max(0.0);
             lost_dots += n_dots[0] - n_dots[1];
         }
-        Layer { lines, ..layer.clone() }
+        layer.with_lines(lines)
     });
     let layers = layers.collect();
     // Rounding onto the border and in the sums is no loss.

@@ -74,6 +74,11 @@ pictures! {
     surface_walls the_walls_are_up_to_date "../../../examples/surface_walls.rs";
     surface_room the_room_is_up_to_date "../../../examples/surface_room.rs";
     surface_resonance the_resonance_is_up_to_date "../../../examples/surface_resonance.rs";
+    surface_cross the_cross_is_up_to_date "../../../examples/surface_cross.rs";
+    surface_map the_map_is_up_to_date "../../../examples/surface_map.rs";
+    surface_levels the_levels_are_up_to_date "../../../examples/surface_levels.rs";
+    surface_sheets the_sheets_are_up_to_date "../../../examples/surface_sheets.rs";
+    surface_bells the_bells_are_up_to_date "../../../examples/surface_bells.rs";
     surface_peaks the_peaks_are_up_to_date "../../../examples/surface_peaks.rs";
 }
 
