@@ -69,6 +69,10 @@ fn curves_of_saddles_and_kinks_have_their_lengths() {
             assert!((found - expected).abs() < 1e-9, "{text}, {n} samples: {found}");
         }
     }
+    // The saddle is beside the middle of its cell, at a fraction that binary numbers have.
+    let found = pieces(&sampled("(x - 0.03125) * (y + 0.09375)", 81), &[0.0]);
+    let at_saddle = found.iter().filter(|p| p.chunks(2).any(|p| p == [0.03125, -0.09375]));
+    assert_eq!(at_saddle.count(), 4);
     let found = length(&pieces(&sampled("x^2 - y^2", 81), &[0.0]));
     assert!((found - 2.0 * 200f64.sqrt()).abs() < 1e-9, "{found}");
 }
