@@ -159,6 +159,9 @@ fn push_area(text: &mut String, area: &Area, seam: &str) {
 /// Points of strokes that are written at once: enough that sharing the work costs nothing.
 const POINTS_AT_ONCE: usize = 1 << 14;
 
+/// So many batches are put together at a time, so that a large drawing is not in memory twice as text.
+const BATCHES_AT_ONCE: usize = 64;
+
 /// All strokes of a layer, one a line.
 fn strokes(layer: &Layer, element: StrokeElement) -> String {
     let lines: Vec<&[DVec2]> = layer.lines.iter().collect();
@@ -175,13 +178,15 @@ fn strokes(layer: &Layer, element: StrokeElement) -> String {
         batches.push(batch);
         rest = others;
     }
-    let texts: Vec<String> = batches.into_par_iter().map(|lines| text_of(lines, element)).collect();
-    let mut text = String::with_capacity(texts.iter().map(|text| text.len() + 1).sum());
-    for strokes in texts.iter().filter(|text| !text.is_empty()) {
-        if !text.is_empty() {
-            text.push('\n');
+    let mut text = String::new();
+    for together in batches.chunks(BATCHES_AT_ONCE) {
+        let texts: Vec<String> = together.par_iter().map(|lines| text_of(lines, element)).collect();
+        for strokes in texts.iter().filter(|text| !text.is_empty()) {
+            if !text.is_empty() {
+                text.push('\n');
+            }
+            text.push_str(strokes);
         }
-        text.push_str(strokes);
     }
     text
 }
