@@ -111,7 +111,8 @@ pub fn chain(
     };
     for_each_trail(&links, |trail| {
         let first = &pieces[trail[0] as usize / 2];
-        if !is_short[trail[0] as usize / 2] {
+        // Joined with others, one that is short by itself may begin a long one.
+        if !trail.iter().all(|&end| is_short[end as usize / 2]) {
             points_along(&pieces, trail, &mut points);
             push(&mut drawing, first, &points);
         }

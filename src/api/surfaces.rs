@@ -62,7 +62,7 @@ impl Surface {
         let no_lines =
             LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
         let sampled = self.sample().map_err(SurfaceError::from)?;
-        let mesh = sampled.lined(&no_lines, &[]).into_mesh()?;
+        let mesh = sampled.lined(&no_lines, &[], None).into_mesh()?;
         if mesh.n_faces() == 0 {
             return Err(SurfaceError::NoCells.into());
         }

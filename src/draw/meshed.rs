@@ -20,9 +20,9 @@ use crate::timing::{Seconds, timed};
 pub struct MeshedOptions {
     /// Which mesh engine; [`LineEngine::Auto`] first tries [`tin`].
     pub engine: LineEngine,
-    /// Also edges between a front and a back triangle. They run along sides of triangles, so a
-    /// fold of a smooth surface comes out as a zigzag within one row of cells, which is as narrow
-    /// as the samples are close.
+    /// Also edges between a front and a back triangle, unless the surface has its folds among its lines.
+    /// They run along sides of triangles, so a fold of a smooth surface comes out as a zigzag within one
+    /// row of cells, which is as narrow as the samples are close.
     pub folds: bool,
     /// Also edges with only one triangle.
     pub border: bool,
@@ -94,11 +94,11 @@ pub(super) fn view<'a>(
     camera: &Camera,
     options: &MeshedOptions,
 ) -> ViewedScene<'a> {
-    let LinedScene { scene, lines } = surface;
+    let LinedScene { scene, lines, has_folds } = surface;
     let mut edges = lines.clone();
     let mut selection = LineSelection::NONE;
     for (is_wanted, kind) in [
-        (options.folds, StrokeKind::Silhouette),
+        (options.folds && !has_folds, StrokeKind::Silhouette),
         (options.border, StrokeKind::Boundary),
         (options.intersections, StrokeKind::Intersection),
         (options.intersections, StrokeKind::Nonmanifold),

@@ -50,7 +50,9 @@ use crate::extent::Extent;
 use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions};
 use crate::strokes::{Stroke, StrokeKind, Strokes};
-use crate::surface::{AxisScale, LatticeLines, LevelCurve, LinedScene, SampledSurface, Surface};
+use crate::surface::{
+    AxisScale, FoldView, LatticeLines, LevelCurve, LinedScene, SampledSurface, Surface,
+};
 use crate::timing::{Seconds, timed};
 
 /// More of the paper covered with lines than this looks like a sheet of ink.
@@ -158,9 +160,15 @@ pub fn draw_surface(
     if grid.is_none() && lines.order.is_some() {
         return Err(SurfaceError::Order);
     }
+    let own_page = Page::place(&surface.extent(&camera), &camera, page);
+    let mm_per_image_unit = own_page.map_or(1.0, |page| page.mm_per_image_unit());
+    let folds = FoldView { camera: &camera, mm_per_image_unit };
     let lined = match grid {
         Some(_) => None,
-        None => Some(timed(&mut seconds.topology, || lined(&surface, lines, &levels))?),
+        None => {
+            let lined = || lined(&surface, lines, &levels, Some(&folds));
+            Some(timed(&mut seconds.topology, lined)?)
+        }
     };
     let extent = match &lined {
         Some((lined, _)) => lined.scene.extent(&camera),
@@ -232,7 +240,7 @@ pub fn draw_surface(
         None if lines.keep_scene
             || visible_wires.is_none() && !around.layout.wires().is_empty() =>
         {
-            Some(self::lined(&surface, lines, &levels)?.0.scene)
+            Some(self::lined(&surface, lines, &levels, Some(&folds))?.0.scene)
         }
         None => None,
     };
@@ -329,6 +337,7 @@ fn lined(
     surface: &SampledSurface,
     lines: &SurfaceLines,
     levels: &LevelSet,
+    view: Option<&FoldView>,
 ) -> Result<(LinedScene, Vec<LevelCurve>), SurfaceError> {
     let lattices = surface.lattices();
     // Scattered points have no grid lines.
@@ -344,7 +353,8 @@ fn lined(
     check(2 * cells.sum::<u64>())?;
     let heights = levels.heights();
     let split_at = if lines.exact { &[] } else { &heights[..] };
-    let mut mesh = surface.lined(&chosen, split_at);
+    let mut mesh =
+        surface.lined(&chosen, split_at, view.filter(|_| lines.silhouette && !lines.exact));
     if mesh.n_triangles() == 0 {
         return Err(SurfaceError::NoCells);
     }
@@ -357,9 +367,9 @@ fn lined(
         mesh.mark_index_levels(|number| levels.is_index(number));
     }
     let curves = if lines.project_levels { mesh.level_curves() } else { Vec::new() };
-    let LinedScene { scene, lines: drawn } = mesh.into_scene()?;
-    let scene = if lines.intersections { scene.with_intersections() } else { scene };
-    Ok((LinedScene { scene, lines: drawn }, curves))
+    let lined = mesh.into_scene()?;
+    let scene = if lines.intersections { lined.scene.with_intersections() } else { lined.scene };
+    Ok((LinedScene { scene, ..lined }, curves))
 }
 
 /// The lines of a surface as it is sampled, ready for any number of views while it is turned, and its
@@ -373,7 +383,7 @@ pub fn for_turning(
 ) -> Result<TurningSurface, SurfaceError> {
     let sampled = surface.sample()?;
     let levels = LevelSet::new(lines, &sampled)?;
-    let (lined, curves) = lined(&sampled, lines, &levels)?;
+    let (lined, curves) = lined(&sampled, lines, &levels, None)?;
     let legend = lines.legend.as_ref();
     let names = surface.sheet_names();
     let legend = legend.map(|legend| LegendText::new(legend, &names, &sampled, lines, &levels));

@@ -12,9 +12,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::height_function::HeightFunction;
-
-/// Roots are known to this part of an edge.
-const ROOT_WIDTH: f64 = 1e-13;
+use super::root::Bracket;
 
 /// A crossing to be found: of the edge from `low` to `high` with a level between their heights.
 #[derive(Debug, Clone, Copy)]
@@ -65,96 +63,41 @@ pub(super) fn places(function: &HeightFunction, crossings: &[Crossing]) -> Vec<f
 }
 
 /// The roots in the given brackets, at whose ends the function is taken to be below the level and
-/// above it. By Chandrupatla's method: inverse quadratic interpolation where that is safe, and
-/// bisection elsewhere (T. R. Chandrupatla, Advances in Engineering Software 28, 1997). All crossings
-/// take a step together.
+/// above it. All crossings take a step together.
 fn roots(
     function: &HeightFunction,
     crossings: &[Crossing],
     brackets: &[(f64, f64)],
     places: &mut [f64],
 ) {
-    let begin = |(k, crossing): (usize, &Crossing)| Search::begin(k, crossing, brackets[k]);
-    let mut active: Vec<Search> = crossings.iter().enumerate().map(begin).collect();
+    let begin = |(k, given): (usize, &Crossing)| {
+        let (from, to) = brackets[k];
+        let below = if from > 0.0 { -f64::MIN_POSITIVE } else { given.low.z - given.level };
+        (k, Bracket::new((from, below), (to, given.high.z - given.level)))
+    };
+    let mut active: Vec<(usize, Bracket)> = crossings.iter().enumerate().map(begin).collect();
     let (mut xs, mut ys, mut zs) = (Vec::new(), Vec::new(), Vec::new());
     while !active.is_empty() {
         xs.clear();
         ys.clear();
-        for search in &active {
-            let Crossing { low, high, .. } = crossings[search.crossing];
-            let place = low + search.t * (high - low);
+        for (k, bracket) in &active {
+            let Crossing { low, high, .. } = crossings[*k];
+            let place = low + bracket.next() * (high - low);
             xs.push(place.x);
             ys.push(place.y);
         }
         zs.resize(xs.len(), 0.0);
         function.heights(&xs, &ys, &mut zs);
         let mut values = zs.iter();
-        active.retain_mut(|search| {
-            let crossing = &crossings[search.crossing];
+        active.retain_mut(|(k, bracket)| {
+            let crossing = &crossings[*k];
             let value = values.next().map_or(f64::NAN, |z| z - crossing.level);
-            let found = search.step(value, crossing);
+            let found =
+                if value.is_nan() { Some(crossing.straight()) } else { bracket.step(value) };
             if let Some(t) = found {
-                places[search.crossing] = t;
+                places[*k] = t;
             }
             found.is_none()
         });
-    }
-}
-
-/// A bracket that closes on a root: the last place `a`, the other end `b` of the bracket, and the place
-/// `c` before.
-struct Search {
-    crossing: usize,
-    a: (f64, f64),
-    b: (f64, f64),
-    /// The place to look at next.
-    t: f64,
-}
-
-impl Search {
-    fn begin(crossing: usize, given: &Crossing, (from, to): (f64, f64)) -> Self {
-        let below = if from > 0.0 { -f64::MIN_POSITIVE } else { given.low.z - given.level };
-        let above = given.high.z - given.level;
-        let straight = below / (below - above);
-        let t = if straight > 0.0 && straight < 1.0 {
-            from + straight * (to - from)
-        } else {
-            0.5 * (from + to)
-        };
-        Self { crossing, a: (from, below), b: (to, above), t }
-    }
-
-    /// Takes the value at the place that was looked at; the root, once it is known.
-    fn step(&mut self, value: f64, crossing: &Crossing) -> Option<f64> {
-        if value.is_nan() {
-            return Some(crossing.straight());
-        }
-        let new = (self.t, value);
-        let c = if (value < 0.0) == (self.a.1 < 0.0) {
-            std::mem::replace(&mut self.a, new)
-        } else {
-            let old = std::mem::replace(&mut self.a, new);
-            std::mem::replace(&mut self.b, old)
-        };
-        let (a, b) = (self.a, self.b);
-        let width = (b.0 - a.0).abs();
-        let nearest = if a.1.abs() < b.1.abs() { a } else { b };
-        if value == 0.0 || width <= 2.0 * ROOT_WIDTH {
-            return Some(nearest.0);
-        }
-        let xi = (a.0 - b.0) / (c.0 - b.0);
-        let phi = (a.1 - b.1) / (c.1 - b.1);
-        let is_safe = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
-        let part = if is_safe {
-            let [fa, fb, fc] = [a.1, b.1, c.1];
-            fa / (fb - fa) * fc / (fb - fc)
-                + (c.0 - a.0) / (b.0 - a.0) * fa / (fc - fa) * fb / (fc - fb)
-        } else {
-            0.5
-        };
-        let least = (ROOT_WIDTH / width).min(0.5);
-        let part = if part.is_nan() { 0.5 } else { part.clamp(least, 1.0 - least) };
-        self.t = a.0 + part * (b.0 - a.0);
-        None
     }
 }

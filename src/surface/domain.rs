@@ -346,6 +346,10 @@ impl LinedMesh {
         let TrimmedGrid { grid, rim, .. } = trimmed;
         let base = self.positions.len() as u32;
         self.push_grid_at(grid, lines, places, &|a, b| trimmed.is_torn(a as u32, b as u32));
+        let rim_from = self.positions.len() as u32;
+        if let Some(sheet) = self.sheets.last_mut() {
+            sheet.rim_from = rim_from;
+        }
         let [columns, rows] = lines.drawn((grid.xs().len(), grid.ys().len()), places);
         let nx = grid.xs().len() as u32;
         let inside = |k: u32| !grid.zs()[k as usize].is_nan();

@@ -28,6 +28,8 @@ pub struct LinedMesh {
     /// Levels, in rising order, at which the cells of lattices are split.
     pub(super) split_at: Vec<f64>,
     pub(super) sheets: Vec<Sheet>,
+    /// Whether its lines have all folds of the view.
+    pub(super) has_folds: bool,
 }
 
 /// What is added to a mesh from here on, until the next sheet.
@@ -36,6 +38,8 @@ pub(super) struct Sheet {
     pub(super) first_triangle: usize,
     /// What it was sampled from, if level curves are traced on that.
     pub(super) function: Option<HeightFunction>,
+    /// From here on its vertices are points of a rim, which is straight between them.
+    pub(super) rim_from: u32,
 }
 
 /// A line between two vertices.
@@ -78,6 +82,8 @@ pub struct LinedScene {
     pub scene: Scene,
     /// The edges that are on a line.
     pub lines: Vec<SelectedLine>,
+    /// Whether all folds of the view that it was made for are among the lines.
+    pub has_folds: bool,
 }
 
 impl LinedMesh {
@@ -93,7 +99,8 @@ impl LinedMesh {
     /// Begins a sheet: what is added from now on belongs to it. Level curves are traced on the function
     /// that it was sampled from, if that is given.
     pub fn begin_sheet(&mut self, function: Option<HeightFunction>) {
-        self.sheets.push(Sheet { first_triangle: self.triangles.len(), function });
+        let first_triangle = self.triangles.len();
+        self.sheets.push(Sheet { first_triangle, function, rim_from: u32::MAX });
     }
 
     /// Adds the triangles and lines of a grid; the cells around a hole are left out.
@@ -294,7 +301,7 @@ impl LinedMesh {
     /// Coordinates that are not finite, or more than a mesh can have.
     pub fn into_scene(self) -> Result<LinedScene, MeshError> {
         let key = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
-        let lines = self.lines.clone();
+        let (lines, has_folds) = (self.lines.clone(), self.has_folds);
         let ends: Vec<[DVec3; 2]> =
             lines.iter().map(|line| line.ends.map(|k| self.positions[k as usize])).collect();
         let scene = Scene::new(self.into_mesh()?);
@@ -310,7 +317,7 @@ impl LinedMesh {
                 Some(SelectedLine { edge: edge(*ends)?, kind: line.kind, part: line.part })
             })
             .collect();
-        Ok(LinedScene { scene, lines })
+        Ok(LinedScene { scene, lines, has_folds })
     }
 }
 

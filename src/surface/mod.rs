@@ -6,6 +6,9 @@ mod axis_scale;
 mod cells;
 mod crossings;
 mod domain;
+mod fold_cuts;
+mod fold_lines;
+mod folds;
 mod grid;
 mod height_cut;
 mod height_function;
@@ -19,14 +22,17 @@ mod places;
 #[cfg(feature = "points")]
 mod points;
 mod proportions;
+mod root;
 mod sampled;
 mod sampling_error;
+mod sheet_jets;
 mod source;
 mod split_cells;
 mod tears;
 
 pub use axis_scale::AxisScale;
 pub use domain::TrimmedGrid;
+pub use folds::FoldView;
 pub use grid::{Grid, GridError, Holes, MAX_SAMPLES, evenly};
 pub use height_function::HeightFunction;
 pub use heights::{HeightError, HeightField, HeightNote, HeightOptions, read_heights};
@@ -37,8 +43,9 @@ pub use names::{name_of_values, typeset};
 pub use places::Places;
 #[cfg(feature = "points")]
 pub use points::{Duplicates, PointsError, ScatteredPoints, delaunay};
-pub use sampled::{Lattice, SampledSurface, SheetJets};
+pub use sampled::{Lattice, SampledSurface};
 pub use sampling_error::SamplingError;
+pub use sheet_jets::SheetJets;
 pub use source::{
     Aspect, DEFAULT_RANGE, DEFAULT_SAMPLES, FamilyError, FormulaSheet, Outside, Surface,
 };

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::axis_scale::AxisScale;
 use super::domain::{Cutting, TrimmedGrid};
-use super::formula::{Axis, Formula, JetGraph};
+use super::fold_cuts::SheetFolds;
+use super::folds::{FoldFunction, FoldView};
+use super::formula::{Axis, Formula};
 use super::grid::{Grid, Holes, check_parameters, check_ranges, check_size};
 use super::height_cut::HeightCut;
 use super::height_function::HeightFunction;
@@ -15,6 +17,7 @@ use super::lined_mesh::{LatticeLines, LinedMesh, close_seams};
 use super::places::Places;
 use super::proportions::{check_positive, mapped};
 use super::sampling_error::SamplingError;
+use super::sheet_jets::SheetJets;
 use super::source::{FormulaSheet, Outside, Source, Surface};
 use crate::camera::Camera;
 use crate::extent::Extent;
@@ -23,21 +26,14 @@ use crate::extent::Extent;
 /// part of the height of both sheets.
 const RIM_TOLERANCE: f64 = 1e-6;
 
-/// The formulas of a sheet, ready to be enclosed.
-#[derive(Debug, Clone)]
-pub enum SheetJets {
-    /// z as a function of x and y.
-    Height(JetGraph),
-    /// x, y and z as functions of u and v.
-    Space([JetGraph; 3]),
-}
-
 /// A surface sampled at points. Its [`Display`](fmt::Display) says how many, for messages.
 #[derive(Debug, Clone)]
 pub struct SampledSurface {
     sheets: Samples,
     /// What the sheets were sampled from, if that is z = f(x, y).
     formulas: Vec<Formula>,
+    /// What the only sheet was sampled from, if that is x, y and z of u and v.
+    in_space: Option<[Formula; 3]>,
     scales: [AxisScale; 3],
     /// The smallest and the largest value of each axis.
     ranges: [(f64, f64); 3],
@@ -286,6 +282,10 @@ impl Surface {
             Source::Formulas(sheets) => sheets.iter().map(|s| self.height_of(s)).collect(),
             _ => Vec::new(),
         };
+        let in_space = match &self.source {
+            Source::Parametric { formulas, .. } => Some(formulas.clone()),
+            _ => None,
+        };
         let ranges = [(0.0, 0.0); 3];
         let is_turned = matches!(self.source, Source::Parametric { .. }) && self.is_turned();
         let places = if is_turned { places.map(Places::turned) } else { places };
@@ -293,6 +293,7 @@ impl Surface {
         let mut surface = SampledSurface {
             sheets,
             formulas,
+            in_space,
             scales,
             ranges,
             n_not_positive,
@@ -576,7 +577,14 @@ impl SampledSurface {
     /// Its triangles with these lines, split for level curves at `levels` (see
     /// [`LinedMesh::for_levels`]). Scattered points have no grid lines: they have lines along all edges
     /// if triangles are to have them.
-    pub fn lined(&self, lines: &LatticeLines, levels: &[f64]) -> LinedMesh {
+    ///
+    /// Where formulas were sampled, triangles are cut along the folds of this view, if it is given.
+    pub fn lined(
+        &self,
+        lines: &LatticeLines,
+        levels: &[f64],
+        view: Option<&FoldView>,
+    ) -> LinedMesh {
         let mut mesh = LinedMesh::for_levels(levels);
         let places = self.places.as_ref();
         let is_traced = !levels.is_empty() && !lines.triangles;
@@ -605,10 +613,39 @@ impl SampledSurface {
                 mesh.push_lattice_at(*n_columns, points, lines, places, &|_, _| false);
             }
         }
+        if let Some(view) = view.filter(|_| !lines.triangles) {
+            let folds = self.folds(view, !levels.is_empty());
+            if !folds.is_empty() {
+                mesh.add_folds(&folds, view);
+            }
+        }
         if let Some(cut) = &self.cut {
             mesh.cut_off(cut);
         }
         mesh
+    }
+
+    /// The functions of the sheets by which they fold; none where they are not known.
+    fn folds(&self, view: &FoldView, is_split: bool) -> Vec<SheetFolds> {
+        let eye = view.eye();
+        if let (Some(formulas), Some(places), false) = (&self.in_space, &self.places, is_split) {
+            let data = AxisScale::DATA;
+            let of = |k: usize| formulas[k].jets().scaled([data, data, self.scales[k]]);
+            let jets = SheetJets::Space([of(0), of(1), of(2)]);
+            let [us, vs] = [Axis::First, Axis::Second].map(|axis| places.along(axis));
+            let parameters = vs.iter().flat_map(|&v| us.iter().map(move |&u| DVec2::new(u, v)));
+            let function = FoldFunction::new(jets, eye);
+            let is_turned = (us[0] > us[us.len() - 1]) != (vs[0] > vs[vs.len() - 1]);
+            return vec![SheetFolds { function, parameters: parameters.collect(), is_turned }];
+        }
+        let jets = self.formulas.iter().map(|formula| formula.jets().scaled(self.scales));
+        let function = |jets| FoldFunction::new(SheetJets::Height(jets), eye);
+        let of_sheet = |jets| SheetFolds {
+            function: function(jets),
+            parameters: Vec::new(),
+            is_turned: false,
+        };
+        jets.map(of_sheet).collect()
     }
 
     /// The samples that grid lines run through, one lattice for each sheet.

@@ -275,7 +275,7 @@ impl SurfaceInput {
         let surface = surface.sample().map_err(|error| self.sampling_error(&error))?;
         let no_lines =
             LatticeLines { along_rows: false, along_columns: false, every: 1, triangles: false };
-        let mesh = surface.lined(&no_lines, &[]).into_mesh()?;
+        let mesh = surface.lined(&no_lines, &[], None).into_mesh()?;
         if mesh.n_faces() == 0 {
             return Err(with_samples(&SurfaceError::NoCells).into());
         }

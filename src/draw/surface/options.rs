@@ -35,7 +35,8 @@ pub struct SurfaceLines {
     pub label_side: LabelSide,
     /// Height of the digits of labels, in millimeters; less where there is no room.
     pub label_height_mm: f64,
-    /// Edges where the surface folds away from the eye.
+    /// Where the surface folds away from the eye: the folds of formulas, unless all is drawn exactly as
+    /// sampled; otherwise edges of triangles.
     pub silhouette: bool,
     /// The border.
     pub border: bool,

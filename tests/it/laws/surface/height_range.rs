@@ -18,7 +18,7 @@ const NO_LINES: hiddenline::stages::surface::LatticeLines =
 /// The triangles of a surface to the scale of its data.
 fn triangles(surface: &Surface) -> Vec<[DVec3; 3]> {
     let sampled = surface.clone().aspect(Aspect::Data).sample().expect("samples");
-    let mesh = sampled.lined(&NO_LINES, &[]).into_mesh().expect("a mesh");
+    let mesh = sampled.lined(&NO_LINES, &[], None).into_mesh().expect("a mesh");
     let at = |v: u32| mesh.positions()[v as usize];
     (0..mesh.n_faces()).map(|face| [0, 1, 2].map(|k| at(mesh.face(face as u32)[k]))).collect()
 }

@@ -5,6 +5,7 @@ mod brute;
 mod damage;
 mod drawing;
 mod floating_horizon;
+mod folds;
 mod height_files;
 mod height_range;
 mod heights;
