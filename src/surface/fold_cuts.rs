@@ -52,13 +52,13 @@ impl LinedMesh {
         let twins = self.first_twins(folds.iter().all(|of| of.function.is_in_plan()));
         let mut cuts: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         let mut sides = vec![0_i8; self.positions.len()];
-        let starts: Vec<usize> = self.sheets.iter().map(|sheet| sheet.first_triangle).collect();
+        let mut starts: Vec<usize> = self.sheets.iter().map(|sheet| sheet.first_triangle).collect();
+        if starts.is_empty() {
+            starts.push(0);
+        }
         let ends = starts.iter().skip(1).copied().chain([self.triangles.len()]);
-        let ranges: Vec<Range<usize>> = if starts.is_empty() {
-            vec![0..self.triangles.len()]
-        } else {
-            starts.iter().zip(ends).map(|(start, end)| *start..end).collect()
-        };
+        let ranges: Vec<Range<usize>> =
+            starts.iter().zip(ends).map(|(start, end)| *start..end).collect();
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut firsts = Vec::with_capacity(ranges.len());
         let mut sided = Vec::with_capacity(self.triangles.len());

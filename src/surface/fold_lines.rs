@@ -151,7 +151,7 @@ impl NearFolds {
         let mut cells: FxHashMap<[i64; 2], Vec<[DVec2; 2]>> = FxHashMap::default();
         for segment @ [a, b] in segments {
             // The cells around places no farther apart than a cell hold all that is near.
-            let n = (a.distance(b) / Self::CELL).ceil().min(MOST_CELLS).max(1.0);
+            let n = (a.distance(b) / Self::CELL).ceil().clamp(1.0, MOST_CELLS);
             let mut last = None;
             for k in 0..=n as u32 {
                 let cell = Self::cell(a.lerp(b, f64::from(k) / n));
