@@ -12,66 +12,98 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec2;
+use glam::{DVec2, dvec2};
 use rayon::prelude::*;
 
 use crate::camera::{ImagePoint, Projection};
 use crate::classify::ViewedScene;
 use crate::strokes::draft::DraftPoint;
 
+use super::tiles::Tiles;
+
 /// Cells across a pen's width, for most pages.
 const CELLS_PER_PEN: f64 = 3.0;
 
-/// Most cells of the grid: 32 MB. Larger pages get larger ones.
+/// Most cells of the grid. Larger pages get larger ones.
 const MAX_CELLS: f64 = (1u64 << 28) as f64;
 
-/// The places beside which the background is seen.
+/// Most samples on a segment.
+const MAX_SAMPLES: f64 = 1e6;
+
+/// What is known of a cell depends on the material no farther away than this many cells: three times the
+/// radius of a disc, which is half a pen.
+const REACH: usize = (1.5 * CELLS_PER_PEN) as usize + 1;
+
+/// Looks for the background in a view.
+pub(super) struct BackgroundFinder<'a> {
+    view: &'a ViewedScene<'a>,
+    grid: Grid,
+    /// Of a disc as wide as the pen, in cells.
+    radius: f64,
+}
+
+/// The places along some strokes beside which the background is seen.
 pub(super) struct Background {
+    grid: Grid,
+    /// The cells beside discs that find room.
+    beside: Tiles,
+}
+
+/// A box of the image, cut into square cells.
+#[derive(Clone, Copy)]
+struct Grid {
     low: DVec2,
     cell: f64,
-    bits: Bits,
+    columns: usize,
+    rows: usize,
 }
 
-/// The background, looked at when first asked for.
-pub(super) struct LazyBackground<'a> {
-    view: &'a ViewedScene<'a>,
-    bounds: (DVec2, DVec2),
-    pen: f64,
-    known: Option<Background>,
-}
-
-impl<'a> LazyBackground<'a> {
-    pub(super) fn new(view: &'a ViewedScene<'a>, bounds: (DVec2, DVec2), pen: f64) -> Self {
-        Self { view, bounds, pen, known: None }
-    }
-
-    pub(super) fn get(&mut self) -> &Background {
-        let Self { view, bounds, pen, known } = self;
-        known.get_or_insert_with(|| Background::new(view, *bounds, *pen))
-    }
-}
-
-impl Background {
-    /// Looks at a box of the image. O(area over cells / 64 + triangles), in parallel.
-    fn new(view: &ViewedScene, (low, high): (DVec2, DVec2), pen: f64) -> Self {
+impl<'a> BackgroundFinder<'a> {
+    /// Looks in a box of the image.
+    pub(super) fn new(view: &'a ViewedScene, (low, high): (DVec2, DVec2), pen: f64) -> Self {
         // A disc needs room outside the box too.
         let (low, high) = (low - 3.0 * pen, high + 3.0 * pen);
         let size = high - low;
         let cell = (pen / CELLS_PER_PEN).max((size.x * size.y / MAX_CELLS).sqrt());
         let cell = cell.max(size.max_element() / MAX_CELLS.sqrt() / 64.0).max(f64::MIN_POSITIVE);
         let [columns, rows] = [size.x, size.y].map(|length| (length / cell) as usize + 1);
-        let material = Raster { low, cell, columns, rows }.cover(view);
-        let radius = 0.5 * pen / cell;
-        let rooms = material.grown(radius).inverted();
-        Self { low, cell, bits: rooms.grown(2.0 * radius) }
+        let grid = Grid { low, cell, columns, rows };
+        Self { view, grid, radius: 0.5 * pen / cell }
     }
 
-    /// Whether the background is seen beside a point.
-    pub(super) fn is_beside(&self, point: DVec2) -> bool {
-        let at = (point - self.low) / self.cell;
-        at.cmpge(DVec2::ZERO).all() && self.bits.get(at.x as usize, at.y as usize)
+    /// Finds the background beside some strokes. O(cells along them + triangles), in parallel.
+    pub(super) fn beside<'p>(&self, strokes: impl Iterator<Item = &'p [DraftPoint]>) -> Background {
+        let grid = self.grid;
+        let mut material = Tiles::new(grid.columns, grid.rows);
+        for pair in strokes.flat_map(|points| points.windows(2)) {
+            grid.for_each_sample(pair[0].at, pair[1].at, |_, cell| {
+                if let Some(cell) = cell {
+                    material.add(cell, REACH);
+                }
+            });
+        }
+        material.number();
+        self.cover(&mut material);
+        let rooms = material.grown(self.radius).inverted();
+        Background { grid, beside: rooms.grown(2.0 * self.radius) }
     }
 
+    /// Sets the cells whose middle lies in the image of a triangle.
+    fn cover(&self, material: &mut Tiles) {
+        let near = match self.view.camera().projection() {
+            Projection::Perspective { near, .. } => near * self.view.camera().forward().length(),
+            Projection::Orthographic => f64::NEG_INFINITY,
+        };
+        let bits: Vec<AtomicU64> = material.take_bits().into_iter().map(AtomicU64::new).collect();
+        self.view.scene().triangles().par_iter().with_min_len(1024).for_each(|triangle| {
+            let corners = triangle.map(|vertex| self.view.image()[vertex as usize]);
+            self.grid.fill(corners, near, material, &bits);
+        });
+        material.set_bits(bits.into_iter().map(AtomicU64::into_inner).collect());
+    }
+}
+
+impl Background {
     /// The share of a stroke beside which the background is seen.
     pub(super) fn share_beside(&self, points: &[DraftPoint]) -> f64 {
         let (mut beside, mut all) = (0usize, 0usize);
@@ -85,46 +117,30 @@ impl Background {
     }
 
     /// Calls `f` for each part of a segment as long as a cell with where it begins, as a fraction of the
-    /// way, and whether the background is seen beside it.
+    /// way, and whether the background is seen beside it. The segment is one of the strokes asked about.
     pub(super) fn for_each_sample(&self, a: DVec2, b: DVec2, mut f: impl FnMut(f64, bool)) {
-        let n = (a.distance(b) / self.cell).ceil().clamp(1.0, MAX_SAMPLES) as usize;
-        for k in 0..n {
-            let at = a.lerp(b, (k as f64 + 0.5) / n as f64);
-            f(k as f64 / n as f64, self.is_beside(at));
-        }
+        self.grid.for_each_sample(a, b, |t, cell| {
+            f(t, cell.is_some_and(|cell| self.beside.has(cell)));
+        });
     }
 }
 
-/// Most samples on a segment.
-const MAX_SAMPLES: f64 = 1e6;
-
-/// The grid while it is filled.
-struct Raster {
-    low: DVec2,
-    cell: f64,
-    columns: usize,
-    rows: usize,
-}
-
-impl Raster {
-    /// Cells whose middle lies in the image of a triangle.
-    fn cover(&self, view: &ViewedScene) -> Bits {
-        let words = self.columns.div_ceil(64);
-        let bits: Vec<AtomicU64> = (0..words * self.rows).map(|_| AtomicU64::new(0)).collect();
-        let near = match view.camera().projection() {
-            Projection::Perspective { near, .. } => near * view.camera().forward().length(),
-            Projection::Orthographic => f64::NEG_INFINITY,
-        };
-        view.scene().triangles().par_iter().with_min_len(1024).for_each(|triangle| {
-            let corners = triangle.map(|vertex| view.image()[vertex as usize]);
-            self.fill(corners, near, &bits);
-        });
-        let bits = bits.into_iter().map(AtomicU64::into_inner).collect();
-        Bits { columns: self.columns, words, bits }
+impl Grid {
+    /// Calls `f` for each part of a segment as long as a cell with where it begins, as a fraction of the
+    /// way, and the cell in its middle, if that is one.
+    fn for_each_sample(&self, a: DVec2, b: DVec2, mut f: impl FnMut(f64, Option<[usize; 2]>)) {
+        let n = (a.distance(b) / self.cell).ceil().clamp(1.0, MAX_SAMPLES) as usize;
+        for k in 0..n {
+            let at = (a.lerp(b, (k as f64 + 0.5) / n as f64) - self.low) / self.cell;
+            let cell = [at.x as usize, at.y as usize];
+            let is_inside = at.cmpge(DVec2::ZERO).all();
+            let is_inside = is_inside && cell[0] < self.columns && cell[1] < self.rows;
+            f(k as f64 / n as f64, is_inside.then_some(cell));
+        }
     }
 
     /// Sets the cells of one triangle, cut at the near plane.
-    fn fill(&self, corners: [ImagePoint; 3], near: f64, bits: &[AtomicU64]) {
+    fn fill(&self, corners: [ImagePoint; 3], near: f64, tiles: &Tiles, bits: &[AtomicU64]) {
         let mut polygon = [DVec2::ZERO; 4];
         let mut n = 0;
         for i in 0..3 {
@@ -144,12 +160,17 @@ impl Raster {
         if n < 3 || !polygon.iter().all(|p| p.is_finite()) {
             return;
         }
-        let (low, high) = polygon
-            .iter()
-            .fold((polygon[0].y, polygon[0].y), |(low, high), p| (low.min(p.y), high.max(p.y)));
-        let words = self.columns.div_ceil(64);
-        let last_row = high.floor().min(self.rows as f64 - 1.0);
-        let mut row = low.ceil().max(0.0);
+        let first = polygon[0];
+        let (low, high) = polygon.iter().fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
+        let low = low.ceil().max(DVec2::ZERO);
+        let last = dvec2(self.columns as f64 - 1.0, self.rows as f64 - 1.0);
+        let high = high.floor().min(last);
+        let is_empty = low.cmpgt(high).any();
+        let [left_top, right_bottom] = [low, high].map(|p| [p.x as usize, p.y as usize]);
+        if is_empty || !tiles.has_any_in(left_top, right_bottom) {
+            return;
+        }
+        let (mut row, last_row) = (low.y, high.y);
         while row <= last_row {
             let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
             for i in 0..n {
@@ -167,75 +188,15 @@ impl Raster {
             let (left, right) =
                 (left.ceil().max(0.0), right.floor().min(self.columns as f64 - 1.0));
             if left <= right {
-                let start = row as usize * words;
-                set(&bits[start..start + words], left as usize, right as usize);
+                let (left, right) = (left as usize, right as usize);
+                tiles.for_each_in_row(row as usize, left, right, |tile, mask| {
+                    // Most cells are covered more than once, and reading is cheap.
+                    if bits[tile].load(Ordering::Relaxed) & mask != mask {
+                        bits[tile].fetch_or(mask, Ordering::Relaxed);
+                    }
+                });
             }
             row += 1.0;
-        }
-    }
-}
-
-/// Sets the bits from `left` to `right` of a row.
-fn set(row: &[AtomicU64], left: usize, right: usize) {
-    let (first, last) = (left / 64, right / 64);
-    for (word, bits) in (first..).zip(&row[first..=last]) {
-        let from = if word == first { left % 64 } else { 0 };
-        let to = if word == last { right % 64 } else { 63 };
-        let mask = (u64::MAX >> (63 - to)) & (u64::MAX << from);
-        // Most cells are covered more than once, and reading is cheap.
-        if bits.load(Ordering::Relaxed) & mask != mask {
-            bits.fetch_or(mask, Ordering::Relaxed);
-        }
-    }
-}
-
-/// A bit for each cell, row by row.
-struct Bits {
-    columns: usize,
-    words: usize,
-    bits: Vec<u64>,
-}
-
-impl Bits {
-    fn get(&self, column: usize, row: usize) -> bool {
-        let word = self.bits.get(row * self.words + column / 64);
-        column < self.columns && word.is_some_and(|word| word >> (column % 64) & 1 == 1)
-    }
-
-    fn inverted(mut self) -> Self {
-        self.bits.par_iter_mut().for_each(|word| *word = !*word);
-        self
-    }
-
-    /// All cells no farther than `radius` cells from one that is set.
-    fn grown(&self, radius: f64) -> Self {
-        let reach = radius.floor() as usize;
-        let n_rows = self.bits.len() / self.words.max(1);
-        let mut bits = vec![0; self.bits.len()];
-        bits.par_chunks_mut(self.words.max(1)).enumerate().for_each_init(
-            || vec![0; self.words],
-            |wide, (row, grown)| {
-                for other in row.saturating_sub(reach)..(row + reach + 1).min(n_rows) {
-                    let up = row.abs_diff(other) as f64;
-                    let across = (radius * radius - up * up).max(0.0).sqrt().floor() as usize;
-                    let source = &self.bits[other * self.words..(other + 1) * self.words];
-                    widen(source, across, wide);
-                    grown.iter_mut().zip(&*wide).for_each(|(grown, wide)| *grown |= wide);
-                }
-            },
-        );
-        Self { columns: self.columns, words: self.words, bits }
-    }
-}
-
-/// A row with every set bit spread by `reach`, below 64, to both sides.
-fn widen(row: &[u64], reach: usize, wide: &mut [u64]) {
-    for (i, wide) in wide.iter_mut().enumerate() {
-        let before = if i > 0 { row[i - 1] } else { 0 };
-        let (here, after) = (row[i], row.get(i + 1).copied().unwrap_or(0));
-        *wide = here;
-        for shift in 1..=reach.min(63) {
-            *wide |= here << shift | before >> (64 - shift) | here >> shift | after << (64 - shift);
         }
     }
 }

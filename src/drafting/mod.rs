@@ -21,6 +21,7 @@ mod near_ends;
 mod outline;
 mod stitch;
 mod tidy;
+mod tiles;
 
 use glam::DVec2;
 
@@ -29,7 +30,7 @@ use crate::classify::ViewedScene;
 use crate::model::creases::looseness;
 use crate::strokes::draft::Draft;
 
-use self::background::LazyBackground;
+use self::background::BackgroundFinder;
 use self::edits::Tidied;
 use self::leave_out::{Rule, crowded_share, leave_out};
 use self::near::SegmentGrid;
@@ -140,14 +141,14 @@ pub fn finish(
         all.append(&hidden);
         return (all, Drafted::default());
     };
-    let mut background = LazyBackground::new(view, paper.bounds, paper.pen);
+    let background = BackgroundFinder::new(view, paper.bounds, paper.pen);
     let visible = if options.outline || options.thin_mm.is_some() {
-        outline::mark(visible, background.get(), &paper, options.outline)
+        outline::mark(visible, &background, &paper, options.outline)
     } else {
         visible
     };
     let shortest = options.shortest_stroke_mm * paper.mm;
-    let visible = tidy(visible, &paper, Some(&mut background), shortest, &mut tidied);
+    let visible = tidy(visible, &paper, Some(&background), shortest, &mut tidied);
     let hidden = tidy(hidden, &paper, None, 0.0, &mut tidied);
     let mut all = visible;
     all.append(&hidden);
@@ -157,7 +158,7 @@ pub fn finish(
         for distance_mm in [ROUNDED_MM.min(overlap_mm), CLOSE_MM.min(overlap_mm), overlap_mm] {
             let (once, left_out) = leave_out(&all, &paper, &paper.overlaps(distance_mm));
             if left_out > 0.0 {
-                all = rejoin(once, &paper, &mut background, shortest);
+                all = rejoin(once, &paper, &background, shortest);
                 overlap += left_out;
             }
         }

@@ -16,6 +16,10 @@ const REACH_SLACK: f64 = 1e-9;
 /// even looked for, since that may be all pairs of the lines of a drawing.
 const MAX_ENDS: usize = 128;
 
+/// Most cells for each stroke with ends, with some more for few strokes.
+const CELLS_PER_STROKE: f64 = 16.0;
+const SPARE_CELLS: f64 = (1 << 12) as f64;
+
 /// For each end of a stroke that is not closed the segments near it.
 pub(super) struct SegmentsNearEnds {
     starts: Vec<u32>,
@@ -33,7 +37,9 @@ impl SegmentsNearEnds {
     /// segments. O(segments + pairs), in parallel but for the ends.
     pub(super) fn new(draft: &Draft, ends: &Ends, paper: &Paper, reach: f64) -> Self {
         let reach = reach * (1.0 + REACH_SLACK);
-        let cells = Cells::new(paper.bounds, reach, MAX_CELLS);
+        let n_open = (0..draft.len() as u32).filter(|&stroke| ends.has(stroke)).count();
+        let max_cells = (CELLS_PER_STROKE * n_open as f64 + SPARE_CELLS).min(MAX_CELLS);
+        let cells = Cells::new(paper.bounds, reach, max_cells);
         let by_cell = EndsByCell::new(draft, ends, &cells);
         let points = draft.points();
         let strokes = draft.strokes_of_points();

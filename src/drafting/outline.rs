@@ -4,7 +4,7 @@ use crate::engines::edge::outline::can_be_outline;
 use crate::strokes::draft::{Draft, DraftPoint};
 
 use super::Paper;
-use super::background::Background;
+use super::background::{Background, BackgroundFinder};
 use super::edits::between;
 
 /// Stretches along a stroke shorter than this, in millimeters, are like what is around them.
@@ -12,12 +12,18 @@ const SHORTEST_MM: f64 = 1.0;
 
 /// Marks the outline and leaves out what is drawn only where it is outline. If `is_cut`, segments are cut
 /// where the outline begins or ends; otherwise each is what its first point is.
-/// O(ink over the background's cells).
-pub(super) fn mark(draft: Draft, background: &Background, paper: &Paper, is_cut: bool) -> Draft {
+/// O(ink over the background's cells + triangles).
+pub(super) fn mark(
+    draft: Draft,
+    background: &BackgroundFinder,
+    paper: &Paper,
+    is_cut: bool,
+) -> Draft {
+    let background = background.beside(draft.iter());
     let mut marked = Draft::default();
     let mut changes = Vec::new();
     for points in draft.iter() {
-        find_changes(points, background, SHORTEST_MM * paper.mm, &mut changes);
+        find_changes(points, &background, SHORTEST_MM * paper.mm, &mut changes);
         let mut changes = changes.iter().peekable();
         let mut is_outline = false;
         let mut walked = 0.0;

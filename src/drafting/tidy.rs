@@ -19,7 +19,7 @@ use crate::strokes::StrokeKind;
 use crate::strokes::draft::{Draft, DraftPoint, extent, is_closed, length};
 
 use super::Paper;
-use super::background::LazyBackground;
+use super::background::BackgroundFinder;
 use super::edits::{Edits, Ends, Tidied};
 use super::inked::Inked;
 use super::near::{Parts, ROUNDING, part_within};
@@ -47,7 +47,7 @@ const CLOSED_MM: f64 = 0.05;
 pub(super) fn tidy(
     draft: Draft,
     paper: &Paper,
-    background: Option<&mut LazyBackground>,
+    background: Option<&BackgroundFinder>,
     shortest: f64,
     tidied: &mut Tidied,
 ) -> Draft {
@@ -69,7 +69,7 @@ pub(super) fn tidy(
 pub(super) fn rejoin(
     draft: Draft,
     paper: &Paper,
-    background: &mut LazyBackground,
+    background: &BackgroundFinder,
     shortest: f64,
 ) -> Draft {
     let mut tidied = Tidied::default();
@@ -202,11 +202,7 @@ fn shadows(inked: &mut Inked, tidied: &mut Tidied) {
 
 /// Leaves out small isolated figures, and short strokes with a loose end. One pass: what a stroke hung
 /// on is not left out next.
-fn specks_and_spurs(
-    inked: &mut Inked,
-    background: Option<&mut LazyBackground>,
-    tidied: &mut Tidied,
-) {
+fn specks_and_spurs(inked: &mut Inked, background: Option<&BackgroundFinder>, tidied: &mut Tidied) {
     let (draft, paper) = (inked.draft(), inked.paper());
     // Only of what could be left out need be known what it is.
     let is_small = |points: &[DraftPoint]| {
@@ -215,7 +211,8 @@ fn specks_and_spurs(
     if !draft.iter().any(is_small) {
         return;
     }
-    let background = background.map(|background| background.get());
+    let small = draft.iter().filter(|points| is_small(points));
+    let background = background.map(|background| background.beside(small));
     let ends = Ends::new(draft);
     let near_ends = inked.near_ends(&ends);
     // Strokes near each end; they may repeat.
@@ -265,7 +262,8 @@ fn specks_and_spurs(
         .into_par_iter()
         .with_min_len(64)
         .map(|points| {
-            !is_small(points) || background.is_some_and(|b| b.share_beside(points) > MOST_OUTLINE)
+            !is_small(points)
+                || background.as_ref().is_some_and(|b| b.share_beside(points) > MOST_OUTLINE)
         })
         .collect();
     let mut figure_holds = vec![false; draft.len()];
