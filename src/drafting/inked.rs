@@ -1,6 +1,6 @@
 //! A draft, and what is near what in it.
 
-use std::cell::OnceCell;
+use std::sync::OnceLock;
 
 use crate::strokes::draft::Draft;
 
@@ -18,13 +18,15 @@ pub(super) const ON_STROKE_MM: f64 = 0.02;
 pub(super) struct Inked<'a> {
     draft: Draft,
     paper: &'a Paper,
-    grid: OnceCell<SegmentGrid>,
-    near_ends: OnceCell<SegmentsNearEnds>,
+    /// How far ends that are joined may be from each other.
+    joint: f64,
+    grid: OnceLock<SegmentGrid>,
+    near_ends: OnceLock<SegmentsNearEnds>,
 }
 
 impl<'a> Inked<'a> {
-    pub(super) fn new(draft: Draft, paper: &'a Paper) -> Self {
-        Self { draft, paper, grid: OnceCell::new(), near_ends: OnceCell::new() }
+    pub(super) fn new(draft: Draft, paper: &'a Paper, joint: f64) -> Self {
+        Self { draft, paper, joint, grid: OnceLock::new(), near_ends: OnceLock::new() }
     }
 
     pub(super) fn draft(&self) -> &Draft {
@@ -33,6 +35,10 @@ impl<'a> Inked<'a> {
 
     pub(super) fn paper(&self) -> &'a Paper {
         self.paper
+    }
+
+    pub(super) fn joint(&self) -> f64 {
+        self.joint
     }
 
     /// The segments of the draft by cells.
@@ -48,7 +54,7 @@ impl<'a> Inked<'a> {
 
     /// Puts a changed draft in place of this one.
     pub(super) fn change(&mut self, draft: Draft) {
-        *self = Self::new(draft, self.paper);
+        *self = Self::new(draft, self.paper, self.joint);
     }
 
     pub(super) fn into_draft(self) -> Draft {

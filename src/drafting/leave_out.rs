@@ -34,23 +34,38 @@ const BLOCK_SEGMENTS: u32 = 1 << 16;
 /// A segment from end to end, as fractions of its length.
 const WHOLE: (f64, f64) = (0.0, 1.0);
 
-/// When ink is left out; lengths in image units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// When ink is left out.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rule {
-    /// A stretch this close to other ink is left out, …
-    pub(super) near: f64,
-    /// … if it comes as close as this somewhere, …
-    pub(super) crowded: f64,
-    /// … and their directions differ by no more than an angle of this sine.
+    /// Which stretches are left out. Each asks about what those before it have left.
+    pub(super) stretches: Vec<Stretch>,
+    /// Directions differ by no more than an angle of this sine.
     pub(super) sine: f64,
-    /// Shorter stretches stay.
-    pub(super) shortest_gap: f64,
-    /// Of strokes of which something is left out, shorter pieces go too.
-    pub(super) shortest_piece: f64,
-    /// The same for strokes, other than outline, that lose more than the share below.
+    /// Strokes, other than outline, that lose more than the share below have no shorter pieces, in image
+    /// units.
     pub(super) shortest_scrap: f64,
     /// A stroke of which less is left than this share has scraps only.
     pub(super) scrap_share: f64,
+}
+
+/// A stretch that is left out; lengths in image units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stretch {
+    /// All of it is this close to other ink, …
+    pub(super) near: f64,
+    /// … and some of it as close as this.
+    pub(super) crowded: f64,
+    /// Shorter stretches stay.
+    pub(super) shortest_gap: f64,
+    /// Shorter pieces beside it go too.
+    pub(super) shortest_piece: f64,
+}
+
+impl Rule {
+    /// How far other ink may be.
+    fn reach(&self) -> f64 {
+        self.stretches.iter().fold(0.0, |reach, stretch| stretch.near.max(reach))
+    }
 }
 
 /// The draft without what the rule leaves out, and the length of that.
@@ -65,7 +80,7 @@ pub(super) fn leave_out(draft: &Draft, paper: &Paper, rule: &Rule) -> (Draft, f6
         ranks[unit.first as usize..unit.end as usize].fill(rank as u32);
     }
     let mut kept = Kept::new(draft);
-    let (mut near, mut crowded) = (Parts::default(), Parts::default());
+    let mut beside: Vec<Beside> = rule.stretches.iter().map(|_| Beside::default()).collect();
     let (mut left_out, mut has_company) = (0.0, false);
     for block in blocks(&units) {
         let found: Vec<Vec<Company>> = block
@@ -74,13 +89,12 @@ pub(super) fn leave_out(draft: &Draft, paper: &Paper, rule: &Rule) -> (Draft, f6
             .map_init(Vec::new, |others, unit| search.company(unit, &ranks, others))
             .collect();
         for (unit, companies) in block.iter().zip(&found) {
-            near.clear();
-            crowded.clear();
+            beside.iter_mut().for_each(Beside::clear);
             has_company |= !companies.is_empty();
             for company in companies {
-                search.compare(company, unit, &kept, &mut near, &mut crowded);
+                search.compare(company, unit, &kept, &mut beside);
             }
-            let pieces = kept_pieces(&search.ends, unit, near.join(0.0), crowded.join(0.0), rule);
+            let pieces = kept_pieces(&search.ends, unit, &mut beside, rule);
             let length: f64 = pieces.iter().map(|(from, to)| to - from).sum();
             let whole = search.ends.along(unit.end) - search.ends.along(unit.first);
             left_out += (whole - length).max(0.0);
@@ -93,17 +107,17 @@ pub(super) fn leave_out(draft: &Draft, paper: &Paper, rule: &Rule) -> (Draft, f6
     (kept.into_draft(draft, &search.ends), left_out)
 }
 
-/// The share of the ink beside which other ink runs as the rule says, whichever is more important. Of
-/// large drawings, that of [`CROWDED_SAMPLE`] segments spread over all strokes.
+/// The share of the ink that other ink crowds as the rule says, whichever is more important. Of large drawings, that of [`CROWDED_SAMPLE`] segments spread over all strokes.
 pub(super) fn crowded_share(draft: &Draft, paper: &Paper, rule: &Rule) -> f64 {
     let search = Search::new(draft, paper, rule);
+    let reach = rule.stretches.iter().fold(0.0, |reach, stretch| stretch.crowded.max(reach));
     let lengths = |others: &mut Vec<u32>, segment: u32| {
         let points = draft.points();
         let [a, b] = [segment, segment + 1].map(|k| points[k as usize].at);
         let mut parts = Parts::default();
         search.beside(segment, |_| true, others);
         for &other in others.iter() {
-            if let Some((t0, t1)) = search.part_beside(segment, other, WHOLE, rule.crowded) {
+            if let Some((t0, t1)) = search.part_beside(segment, other, WHOLE, reach) {
                 parts.add(t0, t1);
             }
         }
@@ -188,44 +202,75 @@ fn precedence(mark: Mark) -> (bool, u32) {
 }
 
 /// The pieces of a unit that stay, as lengths along the stroke.
-fn kept_pieces(
-    ends: &Ends,
-    unit: &Unit,
-    near: &[(f64, f64)],
-    crowded: &[(f64, f64)],
-    rule: &Rule,
-) -> Vec<(f64, f64)> {
-    let (start, end) = (ends.along(unit.first), ends.along(unit.end));
-    let is_whole = |(from, to): (f64, f64)| to - from >= unit.length * (1.0 - ROUNDING);
-    let is_gap = |&(from, to): &(f64, f64)| {
-        (to - from >= rule.shortest_gap || is_whole((from, to)))
-            && crowded.iter().any(|part| part.0 <= to && part.1 >= from)
-    };
-    let mut pieces = Vec::new();
-    let mut at = start;
-    for &(from, to) in near.iter().filter(|part| is_gap(part)) {
-        pieces.push((at, from));
-        at = to;
+fn kept_pieces(ends: &Ends, unit: &Unit, beside: &mut [Beside], rule: &Rule) -> Vec<(f64, f64)> {
+    let whole = (ends.along(unit.first), ends.along(unit.end));
+    let mut pieces = vec![whole];
+    for (stretch, Beside { near, crowded }) in rule.stretches.iter().zip(beside) {
+        let (near, crowded) = (near.join(0.0), crowded.join(0.0));
+        if !near.is_empty() {
+            let cut = |piece| cut(piece, near, crowded, stretch);
+            pieces = pieces.into_iter().flat_map(cut).collect();
+        }
     }
-    pieces.push((at, end));
-    if pieces.len() == 1 && at == start {
-        return pieces;
-    }
-    pieces.retain(|(from, to)| to - from >= rule.shortest_piece);
     let left: f64 = pieces.iter().map(|(from, to)| to - from).sum();
-    if left < rule.scrap_share * unit.length && !unit.mark.outline {
+    let is_cut = pieces != [whole];
+    if is_cut && left < rule.scrap_share * unit.length && !unit.mark.outline {
         pieces.retain(|(from, to)| to - from >= rule.shortest_scrap);
     }
     pieces
 }
 
-/// Two segments that run beside each other, and the parts of the first one that do so if all of the other
-/// one is there.
+/// What is left of a piece without the stretches that are left out.
+fn cut(
+    piece: (f64, f64),
+    near: &[(f64, f64)],
+    crowded: &[(f64, f64)],
+    stretch: &Stretch,
+) -> Vec<(f64, f64)> {
+    let (start, end) = piece;
+    let is_gap = |&(from, to): &(f64, f64)| {
+        let is_whole = to - from >= (end - start) * (1.0 - ROUNDING);
+        (to - from >= stretch.shortest_gap || is_whole)
+            && crowded.iter().any(|part| part.0 <= to && part.1 >= from)
+    };
+    let inside = near.iter().map(|&(from, to)| (from.max(start), to.min(end)));
+    let mut pieces = Vec::new();
+    let mut at = start;
+    for (from, to) in inside.filter(|(from, to)| from <= to).filter(is_gap) {
+        pieces.push((at, from));
+        at = to;
+    }
+    pieces.push((at, end));
+    if pieces != [piece] {
+        pieces.retain(|(from, to)| to - from >= stretch.shortest_piece);
+    }
+    pieces
+}
+
+/// Two segments that run beside each other.
 struct Company {
     segment: u32,
     other: u32,
-    near: (f64, f64),
-    crowded: Option<(f64, f64)>,
+    /// For each stretch of the rule, the parts of the first segment that are near and that are crowded if
+    /// all of the other one is there.
+    parts: [[Option<(f64, f64)>; 2]; MAX_STRETCHES],
+}
+
+/// Stretches of a rule, at most.
+const MAX_STRETCHES: usize = 3;
+
+/// For a stretch of the rule the parts of a unit, as lengths along the stroke.
+#[derive(Default)]
+struct Beside {
+    near: Parts,
+    crowded: Parts,
+}
+
+impl Beside {
+    fn clear(&mut self) {
+        self.near.clear();
+        self.crowded.clear();
+    }
 }
 
 /// Finds ink beside ink.
@@ -238,7 +283,7 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(draft: &'a Draft, paper: &Paper, rule: &'a Rule) -> Self {
-        Self { draft, ends: Ends::new(draft), grid: paper.grid(draft, rule.near), rule }
+        Self { draft, ends: Ends::new(draft), grid: paper.grid(draft, rule.reach()), rule }
     }
 
     fn segments(&self) -> Vec<u32> {
@@ -258,13 +303,9 @@ impl<'a> Search<'a> {
             let key = |segment: u32| (ranks[segment as usize], segment);
             self.beside(segment, |other| key(other) < key(segment), others);
             for &other in others.iter() {
-                if let Some(near) = self.part_beside(segment, other, WHOLE, self.rule.near) {
-                    let crowded = if self.rule.crowded == self.rule.near {
-                        Some(near)
-                    } else {
-                        self.part_beside(segment, other, WHOLE, self.rule.crowded)
-                    };
-                    companies.push(Company { segment, other, near, crowded });
+                let parts = self.parts_beside(segment, other, WHOLE);
+                if parts.iter().any(|[near, _]| near.is_some()) {
+                    companies.push(Company { segment, other, parts });
                 }
             }
         }
@@ -276,7 +317,7 @@ impl<'a> Search<'a> {
     fn beside(&self, segment: u32, counts: impl Fn(u32) -> bool, others: &mut Vec<u32>) {
         others.clear();
         let [a, b] = self.at(segment);
-        self.grid.near(a, b, self.rule.near, |other| {
+        self.grid.near(a, b, self.rule.reach(), |other| {
             if other != segment && counts(other) {
                 others.push(other);
             }
@@ -291,6 +332,24 @@ impl<'a> Search<'a> {
 
     fn at(&self, segment: u32) -> [glam::DVec2; 2] {
         [segment, segment + 1].map(|k| self.draft.points()[k as usize].at)
+    }
+
+    /// For each stretch of the rule, the parts of a segment that are near and that are crowded by a part of
+    /// another one.
+    fn parts_beside(
+        &self,
+        segment: u32,
+        other: u32,
+        part: (f64, f64),
+    ) -> [[Option<(f64, f64)>; 2]; MAX_STRETCHES] {
+        let mut parts = [[None; 2]; MAX_STRETCHES];
+        for (parts, stretch) in parts.iter_mut().zip(&self.rule.stretches) {
+            let near = self.part_beside(segment, other, part, stretch.near);
+            let is_same = stretch.crowded == stretch.near;
+            let crowded = || self.part_beside(segment, other, part, stretch.crowded);
+            *parts = [near, if is_same { near } else { crowded() }];
+        }
+        parts
     }
 
     /// The part of a segment within `reach` of a part of another one, but not where the stroke only goes
@@ -336,28 +395,20 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Adds the parts of a segment beside which its company was kept, as lengths along the stroke.
-    fn compare(
-        &self,
-        company: &Company,
-        unit: &Unit,
-        kept: &Kept,
-        near: &mut Parts,
-        crowded: &mut Parts,
-    ) {
+    /// Adds the parts of a segment beside which its company was kept.
+    fn compare(&self, company: &Company, unit: &Unit, kept: &Kept, beside: &mut [Beside]) {
         let &Company { segment, other, .. } = company;
         let [a, b] = self.at(segment);
         let (start, length) = (self.ends.along(segment), a.distance(b));
         let mut add = |part: (f64, f64)| {
-            let found = if part == WHOLE {
-                [Some(company.near), company.crowded]
-            } else {
-                [self.rule.near, self.rule.crowded]
-                    .map(|reach| self.part_beside(segment, other, part, reach))
-            };
-            for (found, parts) in found.into_iter().zip([&mut *near, &mut *crowded]) {
-                if let Some((t0, t1)) = found {
-                    parts.add(start + t0 * length, start + t1 * length);
+            let parts =
+                if part == WHOLE { company.parts } else { self.parts_beside(segment, other, part) };
+            for (found, beside) in parts.into_iter().zip(&mut *beside) {
+                for (found, parts) in found.into_iter().zip([&mut beside.near, &mut beside.crowded])
+                {
+                    if let Some((t0, t1)) = found {
+                        parts.add(start + t0 * length, start + t1 * length);
+                    }
                 }
             }
         };

@@ -32,7 +32,7 @@ use crate::strokes::draft::Draft;
 
 use self::background::BackgroundFinder;
 use self::edits::Tidied;
-use self::leave_out::{Rule, crowded_share, leave_out};
+use self::leave_out::{Rule, Stretch, crowded_share, leave_out};
 use self::near::SegmentGrid;
 use self::tidy::{rejoin, tidy};
 
@@ -154,13 +154,10 @@ pub fn finish(
     all.append(&hidden);
     let mut overlap = 0.0;
     if let Some(overlap_mm) = options.overlap_mm {
-        // First what lies most closely on other ink, however short it is.
-        for distance_mm in [ROUNDED_MM.min(overlap_mm), CLOSE_MM.min(overlap_mm), overlap_mm] {
-            let (once, left_out) = leave_out(&all, &paper, &paper.overlaps(distance_mm));
-            if left_out > 0.0 {
-                all = rejoin(once, &paper, &background, shortest);
-                overlap += left_out;
-            }
+        let (once, left_out) = leave_out(&all, &paper, &paper.overlaps(overlap_mm));
+        if left_out > 0.0 {
+            all = rejoin(once, &paper, &background, shortest, &mut tidied);
+            overlap += left_out;
         }
     }
     let crowded_share = crowded_share(&all, &paper, &paper.crowds(options.pen_width_mm));
@@ -222,15 +219,18 @@ impl Paper {
         is_usable.then_some(Self { mm, pen, figure, bounds })
     }
 
-    /// Ink that lies on other ink.
+    /// Ink that lies on other ink. First what does so most closely, however short it is.
     fn overlaps(&self, distance_mm: f64) -> Rule {
-        let distance = distance_mm * self.mm;
+        let stretch = |distance_mm: f64| {
+            let distance = distance_mm * self.mm;
+            let shortest_gap = SHORTEST_OVERLAP * distance;
+            let shortest_piece = (SHORTEST_PIECE_MM * self.mm).min(shortest_gap);
+            Stretch { near: distance, crowded: distance, shortest_gap, shortest_piece }
+        };
+        let distances = [ROUNDED_MM.min(distance_mm), CLOSE_MM.min(distance_mm), distance_mm];
         Rule {
-            near: distance,
-            crowded: distance,
+            stretches: distances.map(stretch).into(),
             sine: libm::sin(OVERLAP_TURN_DEG.to_radians()),
-            shortest_gap: SHORTEST_OVERLAP * distance,
-            shortest_piece: (SHORTEST_PIECE_MM * self.mm).min(SHORTEST_OVERLAP * distance),
             shortest_scrap: 0.0,
             scrap_share: 0.0,
         }
@@ -239,12 +239,15 @@ impl Paper {
     /// Ink that leaves no room between itself and other ink.
     fn crowds(&self, distance_mm: f64) -> Rule {
         let distance = distance_mm * self.mm;
-        Rule {
+        let stretch = Stretch {
             near: THIN_RETURN * distance,
             crowded: distance,
-            sine: libm::sin(CROWDED_TURN_DEG.to_radians()),
             shortest_gap: SHORTEST_THINNED * distance,
             shortest_piece: (SHORTEST_THIN_PIECE * distance).max(SHORTEST_THIN_PIECE_MM * self.mm),
+        };
+        Rule {
+            stretches: vec![stretch],
+            sine: libm::sin(CROWDED_TURN_DEG.to_radians()),
             shortest_scrap: SHORTEST_SCRAP_MM * self.mm,
             scrap_share: SCRAP_SHARE,
         }

@@ -15,8 +15,6 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::strokes::draft::Draft;
-
 use super::Paper;
 use super::edits::{Edits, Ends, Tidied};
 use super::inked::{Inked, ON_STROKE_MM};
@@ -51,14 +49,14 @@ struct Joint {
 /// Joins what can be joined, and says whether that was anything. Each end is joined once.
 /// O(points near ends), in parallel.
 pub(super) fn stitch(inked: &mut Inked, tidied: &mut Tidied) -> bool {
-    let (draft, paper) = (inked.draft(), inked.paper());
+    let draft = inked.draft();
     let ends = Ends::new(draft);
     let near_ends = inked.near_ends(&ends);
     let mut joints: Vec<Joint> = (0..2 * draft.len() as u32)
         .into_par_iter()
         .with_min_len(64)
         .filter(|&end| ends.has(end / 2))
-        .flat_map_iter(|end| joints_at(end, draft, near_ends, &ends, paper))
+        .flat_map_iter(|end| joints_at(end, inked, near_ends, &ends))
         .collect();
     let key = |joint: &Joint| (joint.has_stub, joint.ends);
     joints.sort_unstable_by(|a, b| a.badness.total_cmp(&b.badness).then(key(a).cmp(&key(b))));
@@ -84,19 +82,14 @@ pub(super) fn stitch(inked: &mut Inked, tidied: &mut Tidied) -> bool {
     n_joined > 0
 }
 
-fn joints_at(
-    end: u32,
-    draft: &Draft,
-    near_ends: &SegmentsNearEnds,
-    ends: &Ends,
-    paper: &Paper,
-) -> Vec<Joint> {
+fn joints_at(end: u32, inked: &Inked, near_ends: &SegmentsNearEnds, ends: &Ends) -> Vec<Joint> {
+    let paper = inked.paper();
     let at = ends.at(end);
     let out = ends.outward(end, DIRECTION_MM * paper.mm);
     let cos_turn = libm::cos(MAX_TURN_DEG.to_radians());
     let badness = |length: f64, cos: f64| length + TURN_MM * paper.mm * (1.0 - cos);
     let mut joints: Vec<Joint> = Vec::new();
-    let points = draft.points();
+    let points = inked.draft().points();
     for &segment in near_ends.of(end) {
         let other = near_ends.stroke(segment);
         if !ends.has(other) {
@@ -108,7 +101,7 @@ fn joints_at(
             if other_end > end && ends.point(other_end) == point {
                 let gap = at.distance(points[point as usize].at);
                 let cos = -out.dot(ends.outward(other_end, DIRECTION_MM * paper.mm));
-                if gap <= paper.pen && cos >= cos_turn {
+                if gap <= inked.joint() && cos >= cos_turn {
                     let badness = badness(gap, cos);
                     let ends = [end, other_end];
                     joints.push(Joint { badness, has_stub: false, ends, stub: 0.0, gap });

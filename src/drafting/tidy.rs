@@ -11,6 +11,8 @@
 //! The order matters: what is not joined first is eaten piece by piece. An outline is never opened, and
 //! borders and closed figures stay.
 
+use std::cmp::Reverse;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -38,6 +40,12 @@ const MOST_OUTLINE: f64 = 0.3;
 /// Loops at least this large are figures, not specks.
 const LOOP_MM: f64 = 1.0;
 
+/// After parts were left out, ends this near to each other are joined, in millimeters.
+const JOINT_MM: f64 = 0.05;
+
+/// Strokes smaller than this are left out where all of their middle lies under longer ones, in millimeters.
+const COVERED_MM: f64 = 3.0;
+
 /// Ends this near to each other close a loop.
 const CLOSED_MM: f64 = 0.05;
 
@@ -51,14 +59,14 @@ pub(super) fn tidy(
     shortest: f64,
     tidied: &mut Tidied,
 ) -> Draft {
-    let mut inked = Inked::new(draft, paper);
+    let mut inked = Inked::new(draft, paper, paper.pen);
     join_ends(&mut inked, tidied);
     corners(&mut inked, tidied);
-    shadows(&mut inked, tidied);
+    shadows(&mut inked, paper.figure, paper.pen, tidied);
     join_ends(&mut inked, tidied);
     specks_and_spurs(&mut inked, background, tidied);
     corners(&mut inked, tidied);
-    shadows(&mut inked, tidied);
+    shadows(&mut inked, paper.figure, paper.pen, tidied);
     join_ends(&mut inked, tidied);
     leave_out_shorter(&mut inked, shortest, tidied);
     inked.into_draft()
@@ -66,24 +74,30 @@ pub(super) fn tidy(
 
 /// Joins what goes on into each other after parts were left out, around corners too, and leaves out
 /// what is lost without being missed.
+///
+/// Only ends that touch are joined: a pen that crosses the gap where a part was left out draws it again.
 pub(super) fn rejoin(
     draft: Draft,
     paper: &Paper,
     background: &BackgroundFinder,
     shortest: f64,
+    tidied: &mut Tidied,
 ) -> Draft {
-    let mut tidied = Tidied::default();
-    let [mut visible, mut hidden] = draft.by_visibility().map(|draft| Inked::new(draft, paper));
+    let mut joined = Tidied::default();
+    let joint = JOINT_MM * paper.mm;
+    let [mut visible, mut hidden] = draft.by_visibility().map(|d| Inked::new(d, paper, joint));
     for inked in [&mut visible, &mut hidden] {
-        join_ends(inked, &mut tidied);
-        corners(inked, &mut tidied);
+        join_ends(inked, &mut joined);
+        corners(inked, &mut joined);
     }
-    shadows(&mut visible, &mut tidied);
-    specks_and_spurs(&mut visible, Some(background), &mut tidied);
-    leave_out_shorter(&mut visible, shortest, &mut tidied);
+    shadows(&mut visible, paper.figure, paper.pen, tidied);
+    specks_and_spurs(&mut visible, Some(background), tidied);
+    leave_out_shorter(&mut visible, shortest, tidied);
     let mut all = visible.into_draft();
     all.append(hidden.draft());
-    all
+    let mut all = Inked::new(all, paper, joint);
+    shadows(&mut all, COVERED_MM * paper.mm, 0.5 * paper.pen, tidied);
+    all.into_draft()
 }
 
 /// Stitches until nothing joins.
@@ -92,7 +106,7 @@ fn join_ends(inked: &mut Inked, tidied: &mut Tidied) {
     while rounds.next().is_some() && stitch(inked, tidied) {}
 }
 
-/// Joins two ends within a pen's width of each other, whatever the turn, if no third one is there.
+/// Joins two ends near each other, whatever the turn, if no third one is there.
 fn corners(inked: &mut Inked, tidied: &mut Tidied) {
     let (draft, paper) = (inked.draft(), inked.paper());
     let ends = Ends::new(draft);
@@ -107,7 +121,7 @@ fn corners(inked: &mut Inked, tidied: &mut Tidied) {
                 return None;
             }
             let (mut found, mut is_only) = (None, true);
-            for_each_end_near(end, draft, near_ends, &ends, paper.pen, |other| {
+            for_each_end_near(end, draft, near_ends, &ends, inked.joint(), |other| {
                 is_only &= found.is_none_or(|known| known == other);
                 found = Some(other);
             });
@@ -160,44 +174,52 @@ fn for_each_end_near(
     }
 }
 
-/// Leaves out short strokes all of which lies within a pen's width of longer ones.
-fn shadows(inked: &mut Inked, tidied: &mut Tidied) {
-    let (draft, paper) = (inked.draft(), inked.paper());
+/// Leaves out short strokes all of which lies within `reach` of longer ones that stay. Visible strokes
+/// never make way for hidden ones.
+fn shadows(inked: &mut Inked, most_extent: f64, reach: f64, tidied: &mut Tidied) {
+    let draft = inked.draft();
     let lengths: Vec<f64> = draft.iter().map(length).collect();
     let is_short = |stroke: usize| {
-        lengths[stroke] < MOST_CURLED * paper.figure && extent(draft.stroke(stroke)) < paper.figure
+        lengths[stroke] < MOST_CURLED * most_extent && extent(draft.stroke(stroke)) < most_extent
     };
     if !(0..draft.len()).any(is_short) {
         return;
     }
     let (points, grid) = (draft.points(), inked.grid());
-    let is_longer = |other: u32, stroke: usize| {
-        let key = |stroke: usize| (lengths[stroke], std::cmp::Reverse(stroke));
-        key(other as usize) > key(stroke)
-    };
-    let is_shadow = |stroke: usize, parts: &mut Parts| {
-        let range = draft.range(stroke);
-        is_short(stroke)
-            && (range.start..range.end - 1).all(|i| {
-                let segment = [points[i].at, points[i + 1].at];
-                parts.clear();
-                grid.near(segment[0], segment[1], paper.pen, |other| {
-                    if is_longer(grid.stroke(other), stroke) {
-                        let other = [other, other + 1].map(|k| points[k as usize].at);
-                        if let Some((t0, t1)) = part_within(segment, other, paper.pen) {
-                            parts.add(t0, t1);
-                        }
+    let is_visible = |stroke: usize| draft.stroke(stroke)[0].mark.qi == 0;
+    let rank = |stroke: usize| (is_visible(stroke), lengths[stroke], Reverse(stroke));
+    let is_covered = |stroke: usize, left_out: &[bool], parts: &mut Parts| {
+        draft.range(stroke).skip(1).all(|i| {
+            let segment = [points[i - 1].at, points[i].at];
+            parts.clear();
+            grid.near(segment[0], segment[1], reach, |other| {
+                let of = grid.stroke(other) as usize;
+                if rank(of) > rank(stroke) && !left_out[of] {
+                    let other = [other, other + 1].map(|k| points[k as usize].at);
+                    if let Some((t0, t1)) = part_within(segment, other, reach) {
+                        parts.add(t0, t1);
                     }
-                });
-                matches!(parts.join(ROUNDING), [(from, to)] if *from <= ROUNDING && *to >= 1.0 - ROUNDING)
-            })
+                }
+            });
+            matches!(parts.join(ROUNDING), [(from, to)] if *from <= ROUNDING && *to >= 1.0 - ROUNDING)
+        })
     };
-    let shadows: Vec<bool> = (0..draft.len())
+    let mut left_out = vec![false; draft.len()];
+    let mut covered: Vec<usize> = (0..draft.len())
         .into_par_iter()
         .with_min_len(64)
-        .map_init(Parts::default, |parts, stroke| is_shadow(stroke, parts))
+        .map_init(Parts::default, |parts, stroke| {
+            (is_short(stroke) && is_covered(stroke, &left_out, parts)).then_some(stroke)
+        })
+        .flatten_iter()
         .collect();
-    leave_out(inked, &shadows, tidied);
+    // What is left out covers nothing: longest first.
+    covered.sort_by(|&a, &b| lengths[b].total_cmp(&lengths[a]).then(a.cmp(&b)));
+    let mut parts = Parts::default();
+    for stroke in covered {
+        left_out[stroke] = is_covered(stroke, &left_out, &mut parts);
+    }
+    leave_out(inked, &left_out, tidied);
 }
 
 /// Leaves out small isolated figures, and short strokes with a loose end. One pass: what a stroke hung
