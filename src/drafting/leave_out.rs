@@ -8,6 +8,7 @@
 //! Strokes are taken in their order, most important first, and compared with what was kept of those
 //! before. Lines that cross at a larger angle never count.
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::strokes::StrokeKind;
@@ -23,6 +24,10 @@ const SHORTEST_RUN_MM: f64 = 1.0;
 /// Ink of one stroke lies on itself only where it is farther away along the stroke than this many times
 /// the distance at which ink lies on ink.
 const OWN_REACH: f64 = 3.0;
+
+/// The way a stroke goes at a place is that of the stretch which reaches this many pens to both sides:
+/// contours of fine meshes zigzag.
+const TREND_PENS: f64 = 1.0;
 
 /// Of this many segments is measured how crowded they are.
 const CROWDED_SAMPLE: usize = 1 << 15;
@@ -273,17 +278,47 @@ impl Beside {
     }
 }
 
+/// For each point the direction of its stroke over a stretch around the segment that begins there.
+fn trends(draft: &Draft, ends: &Ends, reach: f64) -> Vec<DVec2> {
+    let points = draft.points();
+    let mut trends = vec![DVec2::ZERO; points.len()];
+    for stroke in 0..draft.len() {
+        let range = draft.range(stroke);
+        let along = |i: usize| ends.along(i as u32);
+        let (mut first, mut last) = (range.start, range.start);
+        for i in range.start..range.end - 1 {
+            let middle = 0.5 * (along(i) + along(i + 1));
+            while along(first + 1) <= middle - reach {
+                first += 1;
+            }
+            while last + 1 < range.end && along(last) < middle + reach {
+                last += 1;
+            }
+            let at = |from: usize, s: f64| {
+                let t = ((s - along(from)) / (along(from + 1) - along(from))).clamp(0.0, 1.0);
+                points[from].at.lerp(points[from + 1].at, t)
+            };
+            trends[i] = at(last - 1, middle + reach) - at(first, middle - reach);
+        }
+    }
+    trends
+}
+
 /// Finds ink beside ink.
 struct Search<'a> {
     draft: &'a Draft,
     ends: Ends<'a>,
     grid: SegmentGrid,
+    /// The direction of each segment's stroke there, over a stretch as long as a few pens.
+    trends: Vec<DVec2>,
     rule: &'a Rule,
 }
 
 impl<'a> Search<'a> {
     fn new(draft: &'a Draft, paper: &Paper, rule: &'a Rule) -> Self {
-        Self { draft, ends: Ends::new(draft), grid: paper.grid(draft, rule.reach()), rule }
+        let ends = Ends::new(draft);
+        let trends = trends(draft, &ends, TREND_PENS * paper.pen);
+        Self { draft, ends, grid: paper.grid(draft, rule.reach()), trends, rule }
     }
 
     fn segments(&self) -> Vec<u32> {
@@ -326,11 +361,14 @@ impl<'a> Search<'a> {
         others.dedup();
         others.retain(|&other| {
             let [p, q] = self.at(other);
-            are_parallel(b - a, q - p, self.rule.sine)
+            are_parallel(b - a, q - p, self.rule.sine) || {
+                let [u, v] = [segment, other].map(|k| self.trends[k as usize]);
+                are_parallel(u, v, self.rule.sine)
+            }
         });
     }
 
-    fn at(&self, segment: u32) -> [glam::DVec2; 2] {
+    fn at(&self, segment: u32) -> [DVec2; 2] {
         [segment, segment + 1].map(|k| self.draft.points()[k as usize].at)
     }
 

@@ -40,7 +40,7 @@ const MOST_OUTLINE: f64 = 0.3;
 /// Loops at least this large are figures, not specks.
 const LOOP_MM: f64 = 1.0;
 
-/// After parts were left out, ends this near to each other are joined, in millimeters.
+/// After parts were left out, ends of hidden lines this near to each other are joined, in millimeters.
 const JOINT_MM: f64 = 0.05;
 
 /// Strokes smaller than this are left out where all of their middle lies under longer ones, in millimeters.
@@ -62,11 +62,11 @@ pub(super) fn tidy(
     let mut inked = Inked::new(draft, paper, paper.pen);
     join_ends(&mut inked, tidied);
     corners(&mut inked, tidied);
-    shadows(&mut inked, paper.figure, paper.pen, tidied);
+    shadows(&mut inked, &[(paper.figure, paper.pen)], tidied);
     join_ends(&mut inked, tidied);
     specks_and_spurs(&mut inked, background, tidied);
     corners(&mut inked, tidied);
-    shadows(&mut inked, paper.figure, paper.pen, tidied);
+    shadows(&mut inked, &[(paper.figure, paper.pen)], tidied);
     join_ends(&mut inked, tidied);
     leave_out_shorter(&mut inked, shortest, tidied);
     inked.into_draft()
@@ -75,7 +75,8 @@ pub(super) fn tidy(
 /// Joins what goes on into each other after parts were left out, around corners too, and leaves out
 /// what is lost without being missed.
 ///
-/// Only ends that touch are joined: a pen that crosses the gap where a part was left out draws it again.
+/// Of hidden lines only ends that touch are joined: to cross the gap where a part was left out is to draw it
+/// again. Visible ones are joined as before: fewer strokes are worth a pen's width drawn twice.
 pub(super) fn rejoin(
     draft: Draft,
     paper: &Paper,
@@ -84,19 +85,21 @@ pub(super) fn rejoin(
     tidied: &mut Tidied,
 ) -> Draft {
     let mut joined = Tidied::default();
-    let joint = JOINT_MM * paper.mm;
-    let [mut visible, mut hidden] = draft.by_visibility().map(|d| Inked::new(d, paper, joint));
+    let [visible, hidden] = draft.by_visibility();
+    let mut visible = Inked::new(visible, paper, paper.pen);
+    let mut hidden = Inked::new(hidden, paper, JOINT_MM * paper.mm);
     for inked in [&mut visible, &mut hidden] {
         join_ends(inked, &mut joined);
         corners(inked, &mut joined);
     }
-    shadows(&mut visible, paper.figure, paper.pen, tidied);
+    shadows(&mut visible, &[(paper.figure, paper.pen)], tidied);
     specks_and_spurs(&mut visible, Some(background), tidied);
     leave_out_shorter(&mut visible, shortest, tidied);
     let mut all = visible.into_draft();
     all.append(hidden.draft());
-    let mut all = Inked::new(all, paper, joint);
-    shadows(&mut all, COVERED_MM * paper.mm, 0.5 * paper.pen, tidied);
+    let mut all = Inked::new(all, paper, paper.pen);
+    let covered = (COVERED_MM * paper.mm, 0.5 * paper.pen);
+    shadows(&mut all, &[(paper.figure, paper.pen), covered], tidied);
     all.into_draft()
 }
 
@@ -174,21 +177,23 @@ fn for_each_end_near(
     }
 }
 
-/// Leaves out short strokes all of which lies within `reach` of longer ones that stay. Visible strokes
-/// never make way for hidden ones.
-fn shadows(inked: &mut Inked, most_extent: f64, reach: f64, tidied: &mut Tidied) {
+/// Leaves out short strokes all of which lies beside longer ones that stay: strokes below an extent within
+/// a reach. Visible strokes never make way for hidden ones.
+fn shadows(inked: &mut Inked, extents: &[(f64, f64)], tidied: &mut Tidied) {
     let draft = inked.draft();
     let lengths: Vec<f64> = draft.iter().map(length).collect();
-    let is_short = |stroke: usize| {
-        lengths[stroke] < MOST_CURLED * most_extent && extent(draft.stroke(stroke)) < most_extent
+    let reach = |stroke: usize| {
+        let extent = extent(draft.stroke(stroke));
+        let is_below = |most: f64| extent < most && lengths[stroke] < MOST_CURLED * most;
+        extents.iter().find(|&&(most, _)| is_below(most)).map(|&(_, reach)| reach)
     };
-    if !(0..draft.len()).any(is_short) {
+    if !(0..draft.len()).any(|stroke| reach(stroke).is_some()) {
         return;
     }
     let (points, grid) = (draft.points(), inked.grid());
     let is_visible = |stroke: usize| draft.stroke(stroke)[0].mark.qi == 0;
     let rank = |stroke: usize| (is_visible(stroke), lengths[stroke], Reverse(stroke));
-    let is_covered = |stroke: usize, left_out: &[bool], parts: &mut Parts| {
+    let is_covered = |stroke: usize, reach: f64, left_out: &[bool], parts: &mut Parts| {
         draft.range(stroke).skip(1).all(|i| {
             let segment = [points[i - 1].at, points[i].at];
             parts.clear();
@@ -205,19 +210,20 @@ fn shadows(inked: &mut Inked, most_extent: f64, reach: f64, tidied: &mut Tidied)
         })
     };
     let mut left_out = vec![false; draft.len()];
-    let mut covered: Vec<usize> = (0..draft.len())
+    let mut covered: Vec<(usize, f64)> = (0..draft.len())
         .into_par_iter()
         .with_min_len(64)
         .map_init(Parts::default, |parts, stroke| {
-            (is_short(stroke) && is_covered(stroke, &left_out, parts)).then_some(stroke)
+            let reach = reach(stroke)?;
+            is_covered(stroke, reach, &left_out, parts).then_some((stroke, reach))
         })
         .flatten_iter()
         .collect();
     // What is left out covers nothing: longest first.
-    covered.sort_by(|&a, &b| lengths[b].total_cmp(&lengths[a]).then(a.cmp(&b)));
+    covered.sort_by(|a, b| lengths[b.0].total_cmp(&lengths[a.0]).then(a.0.cmp(&b.0)));
     let mut parts = Parts::default();
-    for stroke in covered {
-        left_out[stroke] = is_covered(stroke, &left_out, &mut parts);
+    for (stroke, reach) in covered {
+        left_out[stroke] = is_covered(stroke, reach, &left_out, &mut parts);
     }
     leave_out(inked, &left_out, tidied);
 }
