@@ -20,6 +20,7 @@ mod materials;
 mod mtl;
 mod obj;
 mod obj_filter;
+mod obj_normals;
 mod off;
 mod parts;
 #[cfg(feature = "ply")]

@@ -22,6 +22,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
         soup.face_parts.extend(std::iter::repeat_n(part, end - first));
     }
     soup.parts = filtered.parts;
+    soup.corner_normals = filtered.normals.of_corners();
     let mut draft = Draft {
         unused_vertices: filtered.n_vertices.saturating_sub(soup.positions.len()),
         notices: filtered.notices,

@@ -3,8 +3,8 @@
 //! tobj itself fails on byte order marks, comments after a record, continued lines, colors
 //! on some vertices only, and numbers of normals or texture coordinates that do not exist. It
 //! reports no line numbers, and some input makes it panic. This filter, one pass over the bytes into one
-//! buffer, keeps only vertices and faces known to be valid. Names of groups and materials
-//! are kept separately, so tobj sees a single object and shared vertices stay shared.
+//! buffer, keeps only vertices and faces known to be valid. Names of groups and materials,
+//! and normals, are kept separately, so tobj sees a single object and shared vertices stay shared.
 //!
 //! Polylines (`l`) become segments at the end of the text, as faces of two corners. A vertex that is
 //! not finite becomes `v NaN N 0`, where N says which one: tobj drops unused vertices, so only those in
@@ -15,14 +15,14 @@
 use std::io::Write as _;
 
 use super::error::{Fault, Located};
+use super::obj_normals::Normals;
 use super::parts::PartTable;
 use super::text::{after_line_end, is_blank, is_line_end, name, number, shown};
 use super::warning::Notice;
 use crate::model::mesh::MeshPart;
 
 /// Records that affect neither shape nor names: skipped silently.
-const IRRELEVANT: [&[u8]; 16] = [
-    b"vn",
+const IRRELEVANT: [&[u8]; 15] = [
     b"vt",
     b"s",
     b"mg",
@@ -56,6 +56,8 @@ pub(super) struct Filtered {
     pub(super) n_vertices: usize,
     pub(super) n_faces: usize,
     pub(super) n_corners: usize,
+    /// Normals, for the corners of faces.
+    pub(super) normals: Normals,
     /// Groups and materials, in order of their first face; empty when the file names none.
     pub(super) parts: Vec<MeshPart>,
     /// The first face of each run of faces that have the same part, and that part.
@@ -69,7 +71,7 @@ pub(super) struct Filtered {
 /// Whether the first record of a text is one of OBJ.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
     let mut records = Records::new(bytes);
-    let known: [&[u8]; 7] = [b"v", b"f", b"o", b"g", b"l", b"p", b"usemtl"];
+    let known: [&[u8]; 8] = [b"v", b"vn", b"f", b"o", b"g", b"l", b"p", b"usemtl"];
     while !records.at_end() {
         if let Some(keyword) = records.word(true) {
             return known.contains(&keyword) || IRRELEVANT.contains(&keyword);
@@ -101,6 +103,7 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
         match records.word(true) {
             None => {}
             Some(b"v") => copy_vertex(&mut records, &mut out)?,
+            Some(b"vn") => read_normal(&mut records, &mut out.normals),
             Some(b"f") => copy_face(&mut records, &mut out, &mut largest, &mut naming)?,
             Some(b"o" | b"g") => naming.set_group(records.words_of_name()),
             Some(b"usemtl") => naming.set_material(records.words_of_name()),
@@ -127,6 +130,7 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     if out.parts.is_empty() {
         out.runs.clear();
     }
+    out.normals.end(out.n_corners);
     out.n_segments = segments.len();
     out.n_corners += 2 * segments.len();
     for [from, to] in segments {
@@ -220,12 +224,14 @@ fn copy_plain_face(
         if index > line_largest.0 {
             line_largest = (index, start, end);
         }
+        out.normals.note(out.n_corners + n_corners, &rest[end..at]);
         out.text.push(b' ');
         out.text.extend_from_slice(&rest[start..end]);
         n_corners += 1;
     }
     if n_corners < 3 || rest.get(at).is_some_and(|&byte| !is_line_end(byte)) {
         out.text.truncate(text_before);
+        out.normals.truncate(out.n_corners);
         return false;
     }
     let (index, start, end) = line_largest;
@@ -321,16 +327,26 @@ fn copy_face(
         let length = word.iter().position(|&byte| byte == b'/').unwrap_or(word.len());
         out.text.push(b' ');
         out.text.extend_from_slice(&word[..length]);
+        out.normals.note(out.n_corners + n_corners, &word[length..]);
         n_corners += 1;
     }
     if n_corners < 3 {
         out.text.truncate(start);
+        out.normals.truncate(out.n_corners);
         out.first_degenerate_line.get_or_insert(line);
         out.n_degenerate += 1;
         return Ok(());
     }
     finish_face(n_corners, out, naming);
     Ok(())
+}
+
+/// Reads a `vn` record. One that is not three numbers is no normal, which costs the faces nothing.
+fn read_normal(records: &mut Records<'_>, normals: &mut Normals) {
+    let mut next = || records.word(false).and_then(|word| number(word).ok());
+    let [x, y, z] = [next(), next(), next()];
+    let normal = x.zip(y).zip(z).map(|((x, y), z)| [x, y, z].map(|part| part as f32));
+    normals.push(normal.unwrap_or_default());
 }
 
 /// Reads an `l` record into segments of vertex numbers counted from 1.

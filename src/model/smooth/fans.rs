@@ -41,6 +41,9 @@ impl Corners {
         let topology = Topology::of_triangles(triangles, mesh.positions().len());
         let given =
             (!mesh.corner_normals().is_empty()).then(|| given_normals(mesh, triangles, faces));
+        // Zero where the file gives none, as in all of some models of a scene.
+        let given_at =
+            |corner: usize| given.as_ref().map_or(DVec3::ZERO, |normals| normals[corner]);
         let area = |t: usize| {
             let [p, q, r] = triangles[t].map(|v| mesh.positions()[v as usize]);
             (q - p).cross(r - p)
@@ -66,19 +69,21 @@ impl Corners {
                 flats.unite(t, u);
             }
             let corner = |t: u32, v: u32| 3 * t + place(triangles[t as usize], v) as u32;
-            let is_smooth = match (&given, limits) {
-                (Some(normals), _) => [a, b].iter().all(|&v| {
-                    let [n, m] = [t, u].map(|t| normals[corner(t, v) as usize]);
+            let at = |v: u32| [t, u].map(|t| given_at(corner(t, v) as usize));
+            let is_given = [a, b].iter().any(|&v| at(v) != [DVec3::ZERO; 2]);
+            let is_smooth = match limits {
+                _ if is_given => [a, b].iter().all(|&v| {
+                    let [n, m] = at(v);
                     n.cross(m).length_squared() <= SAME_NORMAL && n.dot(m) > 0.0
                 }),
-                (None, Some(limit)) => {
+                Some(limit) => {
                     faces[t as usize] == faces[u as usize]
                         || is_flat
                         || !limit.is_exceeded_by(areas[t as usize], areas[u as usize], || {
                             mesh.coordinate_error() * heights(mesh, [a, b], [t, u], &areas)
                         })
                 }
-                (None, None) => false,
+                None => false,
             };
             if is_smooth {
                 for v in [a, b] {
@@ -102,13 +107,14 @@ impl Corners {
                     [i, (i + 1) % 3, (i + 2) % 3].map(|k| mesh.positions()[corners[k] as usize]);
                 let (along, across) = (q - p, r - p);
                 let angle = libm::atan2(along.cross(across).length(), along.dot(across));
-                let normal = match &given {
-                    Some(normals) => normals[3 * t + i],
-                    // Large flat regions stay flat beside narrow fillets.
-                    None => angle * region * region * areas[t].normalize_or_zero(),
-                };
                 let fan = fans.of(3 * t as u32 + i as u32) as usize;
-                sums[fan] += normal;
+                let normal = given_at(3 * t + i);
+                if normal != DVec3::ZERO {
+                    sums[fan] += normal;
+                    continue;
+                }
+                // Large flat regions stay flat beside narrow fillets.
+                sums[fan] += angle * region * region * areas[t].normalize_or_zero();
                 largest[fan].add(flats.of(t as u32), region, areas[t]);
             }
         }
@@ -121,7 +127,7 @@ impl Corners {
                     let root = fans.of(3 * t + i) as usize;
                     if numbers[root] == u32::MAX {
                         numbers[root] = normals.len() as u32;
-                        let flat = largest[root].normal().filter(|_| given.is_none());
+                        let flat = largest[root].normal();
                         normals.push(flat.unwrap_or(sums[root]).normalize_or_zero());
                     }
                     numbers[root]

@@ -190,3 +190,34 @@ fn a_finer_tolerance_is_kept_and_nothing_cracks() {
         assert_eq!(refined.positions()[..cow.positions().len()], *cow.positions());
     }
 }
+
+#[test]
+fn models_without_normals_are_smoothed_by_their_angles_beside_one_that_has_some() {
+    // The same sphere twice, side by side, once with normals.
+    let (given, plain) = (sphere(8, true), sphere(8, false));
+    let mut soup = PolygonSoup::default();
+    for (mesh, offset) in [(&given, 0.0), (&plain, 4.0)] {
+        let first = soup.positions.len() as u32;
+        soup.positions.extend(mesh.positions().iter().map(|&p| p + dvec3(offset, 0.0, 0.0)));
+        for face in 0..mesh.n_faces() as u32 {
+            let corners: Vec<u32> = mesh.face(face).iter().map(|&v| first + v).collect();
+            soup.push_face(&corners);
+        }
+    }
+    soup.corner_normals = given.corner_normals().to_vec();
+    soup.corner_normals.resize(soup.corners.len(), [0.0; 3]);
+    let both = Mesh::new(soup).unwrap().0;
+    let radii = |parts: SmoothParts| {
+        let (refined, _) = smooth(&both, parts, 1e-3).unwrap();
+        let new = &refined.positions()[both.positions().len()..];
+        let far = new.iter().filter(|p| p.x > 2.0);
+        assert!(new.iter().filter(|p| p.x <= 2.0).all(|p| (p.length() - 1.0).abs() < 1e-3));
+        far.map(|&p| (p - dvec3(4.0, 0.0, 0.0)).length()).collect::<Vec<f64>>()
+    };
+    assert!(radii(SmoothParts::ByNormals).is_empty(), "nothing is known of the second one");
+    let by_angle = radii(SmoothParts::Below(60.0));
+    assert!(
+        by_angle.len() > 100 && by_angle.iter().all(|r| (r - 1.0).abs() < 0.02),
+        "{by_angle:?}"
+    );
+}

@@ -124,3 +124,36 @@ fn what_obj_readers_skip_they_say() {
     assert_eq!(model.warnings.len(), 7);
     assert_eq!(model.warnings[6].notice, Notice::OtherUnknownRecords { count: 994 });
 }
+
+#[test]
+fn obj_normals_belong_to_corners_and_cost_no_face_where_they_are_wrong() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+    let normals = "vn 0 0 1\nvn 0 0.6 8e-1\nvn x 1 0\nvn 1 0\n";
+    let (up, tilted, none) = ([0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.0; 3]);
+    for (faces, expected) in [
+        ("f 1//1 2//2 3//1\n", vec![up, tilted, up]),
+        ("f 1/7/1 2/8/2 3/9/1\n", vec![up, tilted, up]),
+        // Counted back from the last, here from the first two.
+        ("f 1//-4 2//-3 3//-4\n", vec![up, tilted, up]),
+        ("f +1//+1 2//2 \\\n3//1 # four\n", vec![up, tilted, up]),
+        // Neither numbers that do not exist nor normals that are none.
+        ("f 1//1 2//3 3//4\n", vec![up, none, none]),
+        ("f 1//1 2//5 3//0\n", vec![up, none, none]),
+        ("f 1//1 2//99999999999999999999 3//-9\n", vec![up, none, none]),
+        ("f 1//x 2// 3//1/2\n", vec![none, none, up]),
+        // Faces without any, and such that are left out.
+        (
+            "f 1 2 3\nf 2//2 3//1 4//2\nf 1 2 4\n",
+            vec![none, none, none, tilted, up, tilted, none, none, none],
+        ),
+        ("f 1//1 2//1\nf 1//2 2//2 3//1\n", vec![tilted, tilted, up]),
+        ("f 1//2 2//1 \nf 1//2 2//2 3//1\nl 1 2\n", vec![tilted, tilted, up]),
+        ("f 1/1 2/1 3/1\n", vec![]),
+    ] {
+        let model = good("x.obj", format!("{vertices}{normals}{faces}"));
+        assert_eq!(model.mesh.corner_normals(), expected, "{faces:?}");
+    }
+    // Faces may come before what they name.
+    let model = good("x.obj", format!("f 1//1 2//2 3//1\n{normals}{vertices}"));
+    assert_eq!(model.mesh.corner_normals(), [up, tilted, up]);
+}
