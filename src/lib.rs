@@ -212,6 +212,7 @@ pub use api::{Error, SceneBuilder};
 pub use model::arrange::UpAxis;
 pub use model::mesh::{Mesh, PolygonSoup};
 pub use model::scene::Scene;
+pub use model::smooth::SmoothParts;
 pub use read::{ModelFormat, Warning};
 
 // A surface.

@@ -66,11 +66,11 @@ impl Axes {
 pub enum AxesStyle {
     /// Three edges of the box, on the outline, with ticks and numbers.
     Edges,
-    /// These and the rectangle that the box stands on.
+    /// The same, and the rectangle that the box stands on.
     Base,
     /// The three faces behind the surface, with a grid.
     Back,
-    /// These and the other edges of the box.
+    /// The same, and the other edges of the box.
     Box,
     /// The four sides of a map, for views from straight above or below.
     Frame,

@@ -93,11 +93,11 @@ enum Method {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Shadows {
-    /// What faces away from the light, and what something keeps the light from
+    /// What faces away from the light, and what other faces shade
     Cast,
     /// Only what faces away from the light
     Own,
-    /// None: tone falls off all around
+    /// No shadows: tone falls off evenly to all sides
     None,
     /// Nothing but shadows
     Only,

@@ -34,7 +34,7 @@ pub(super) struct ModelArgs {
     /// Axis that points up in the models [default: z, but y in glTF]
     #[arg(long, value_name = "AXIS", value_parser = one_of::<UpAxis>(), allow_hyphen_values = true)]
     up_axis: Option<UpAxis>,
-    /// Factor for all coordinates; once for all models, or once for each in their order
+    /// Factor for all coordinates; once for all models, or once for each, in order
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
     scale: Vec<f64>,
     /// Rotate by angles in degrees around x, then y, then z; once for all models, or once for each

@@ -20,10 +20,10 @@ pub(super) struct PaperArgs {
     /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
     #[arg(long, value_name = "SIZE")]
     page: Option<Paper>,
-    /// Turn the sheet so that it is wider than high
+    /// Turn the sheet so that it is wider than tall
     #[arg(long, conflicts_with = "portrait")]
     landscape: bool,
-    /// Turn the sheet so that it is higher than wide
+    /// Turn the sheet so that it is taller than wide
     #[arg(long)]
     portrait: bool,
     /// Empty border on all sides [default: 10, for `optimize` 0]

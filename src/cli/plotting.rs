@@ -36,10 +36,10 @@ pub(super) struct PlotArgs {
     /// are equal within the rounding of the file.
     #[arg(long, value_name = "MM", value_parser = values::length)]
     join_tolerance: Option<f64>,
-    /// Leave out ink this close to other ink of the same pen
+    /// Leave out ink this close to other ink in the same direction
     ///
-    /// The default is 0.0005 for drawings of models. For drawings read from SVG it is 0: only exactly
-    /// collinear ink is left out.
+    /// The default is half the width of the pen for drawings of models. For drawings read from SVG it is
+    /// 0: only exactly collinear ink is left out.
     #[arg(long, value_name = "MM", value_parser = values::length)]
     overlap_tolerance: Option<f64>,
     /// Start a new layer, between strokes, once the pen has drawn this far; 10m is ten meters

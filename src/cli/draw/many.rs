@@ -68,7 +68,7 @@ pub(super) struct ManyArgs {
     /// Leave out drawings whose file exists
     #[arg(long)]
     skip_existing: bool,
-    /// Go on after a drawing that fails, and exit with 1 at the end
+    /// Continue after a drawing that fails, and exit with 1 at the end
     #[arg(long)]
     keep_going: bool,
 }

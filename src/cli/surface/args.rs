@@ -168,7 +168,7 @@ enum LabelSideName {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Negative {
-    /// As the others
+    /// Like the others
     Solid,
     /// With dashes
     Dashed,

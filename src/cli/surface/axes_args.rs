@@ -45,11 +45,11 @@ pub(in crate::cli) struct AxesArgs {
 enum StyleName {
     /// Three edges of the box
     Edges,
-    /// These and the rectangle that the box stands on
+    /// The same, and the rectangle that the box stands on
     Base,
     /// The three faces behind the surface, with a grid
     Back,
-    /// These and the other edges of the box
+    /// The same, and the other edges of the box
     Box,
     /// The four sides of a map, for --view top and bottom
     Frame,
