@@ -24,7 +24,7 @@ use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Material, Node, Root, Scene};
 
-use super::Draft;
+use super::Parsed;
 use super::error::{Fault, Located};
 use super::parts::{PartTable, color_of_parts};
 use super::warning::Notice;
@@ -37,28 +37,28 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 }
 
 /// Reads either kind. `folder` is where buffers may be; without it only those within the file are read.
-pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Draft, Located> {
+pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Parsed, Located> {
     read_root(bytes, folder).map_err(Into::into)
 }
 
-fn read_root(bytes: &[u8], folder: Option<&Path>) -> Result<Draft, Fault> {
+fn read_root(bytes: &[u8], folder: Option<&Path>) -> Result<Parsed, Fault> {
     let (root, chunk) = container::open(bytes)?;
     check_extensions(&root)?;
     let buffers = container::buffers(&root, chunk, folder)?;
     let mut builder = Builder {
         root: &root,
         accessors: Accessors::new(&root, &buffers),
-        draft: Draft { unit_mm: Some(1000.0), ..Draft::default() },
+        parsed: Parsed { unit_mm: Some(1000.0), ..Parsed::default() },
         parts: PartTable::default(),
         n_points: 0,
     };
     builder.add_scene()?;
-    let Builder { mut draft, parts, n_points, .. } = builder;
+    let Builder { mut parsed, parts, n_points, .. } = builder;
     if n_points > 0 {
-        draft.notices.push(Notice::Points { count: n_points, first_line: None });
+        parsed.notices.push(Notice::Points { count: n_points, first_line: None });
     }
-    draft.set_parts(parts);
-    Ok(draft)
+    parsed.set_parts(parts);
+    Ok(parsed)
 }
 
 /// Refuses files that require an extension that changes the geometry.
@@ -76,11 +76,11 @@ fn check_extensions(root: &Root) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Puts a scene's meshes into a draft.
+/// Puts a scene's meshes into what the file holds.
 struct Builder<'a> {
     root: &'a Root,
     accessors: Accessors<'a>,
-    draft: Draft,
+    parsed: Parsed,
     parts: PartTable,
     /// Points that are left out.
     n_points: usize,
@@ -175,7 +175,7 @@ impl Builder<'_> {
         let mut used = indices.clone();
         used.sort_unstable();
         used.dedup();
-        let soup = &mut self.draft.soup;
+        let soup = &mut self.parsed.soup;
         let first = soup.positions.len();
         let n_corners = soup.corners.len() + 3 * indices.len() + 2 * soup.wires.len();
         if n_corners.max(first + used.len()) >= u32::MAX as usize {

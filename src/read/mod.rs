@@ -203,9 +203,9 @@ fn read_named(
         .map_err(|Located { line, fault }| ReadError { name: name.to_owned(), line, fault })
 }
 
-/// What a reader returns.
+/// What a reader found in a file.
 #[derive(Debug, Default)]
-struct Draft {
+struct Parsed {
     soup: PolygonSoup,
     notices: Vec<Notice>,
     /// Vertices of the soup with a coordinate that is not finite: index, line, fault.
@@ -219,7 +219,7 @@ struct Draft {
     unused_vertices: usize,
 }
 
-impl Draft {
+impl Parsed {
     /// Notes a face of fewer than three corners that is left out.
     fn leave_out_face(&mut self, line: Option<usize>) {
         if self.degenerate_faces == 0 {
@@ -271,7 +271,7 @@ fn read_model(
     }
     refuse_other_files(path, bytes, format)?;
     let format = format.or_else(|| ModelFormat::from_content(bytes)).ok_or(Fault::UnknownFormat)?;
-    let mut draft = match format {
+    let mut parsed = match format {
         ModelFormat::Obj => obj::read(&text::decode(bytes)),
         ModelFormat::Stl => stl::read(bytes),
         #[cfg(feature = "ply")]
@@ -293,27 +293,27 @@ fn read_model(
             Err(Fault::from(FeatureOff { format: "3MF", feature: "3mf" }).into())
         }
     }?;
-    draft.check_vertices()?;
-    let vertices = draft.soup.positions.len() + draft.unused_vertices;
-    let (mesh, mut repairs) = Mesh::new(draft.soup).map_err(Fault::from)?;
-    repairs.degenerate_faces += draft.degenerate_faces;
-    repairs.unused_vertices += draft.unused_vertices;
+    parsed.check_vertices()?;
+    let vertices = parsed.soup.positions.len() + parsed.unused_vertices;
+    let (mesh, mut repairs) = Mesh::new(parsed.soup).map_err(Fault::from)?;
+    repairs.degenerate_faces += parsed.degenerate_faces;
+    repairs.unused_vertices += parsed.unused_vertices;
     if mesh.n_faces() == 0 && mesh.wires().is_empty() {
         let degenerate = repairs.degenerate_faces;
         return Err(Fault::NoFaces { vertices, degenerate }.into());
     }
-    let mut notices = draft.notices;
+    let mut notices = parsed.notices;
     if repairs.degenerate_faces > 0 {
         // A line is only known to be the first when all degenerate faces have one.
-        let first_line = draft
+        let first_line = parsed
             .first_degenerate_line
-            .filter(|_| repairs.degenerate_faces == draft.degenerate_faces);
+            .filter(|_| repairs.degenerate_faces == parsed.degenerate_faces);
         notices.push(Notice::DegenerateFaces { count: repairs.degenerate_faces, first_line });
     }
     let name = path.display().to_string();
     let warnings = notices.into_iter().map(|notice| Warning { name: name.clone(), notice });
     let warnings = warnings.collect();
-    Ok(Model { mesh, format, repairs, unit_mm: draft.unit_mm, warnings })
+    Ok(Model { mesh, format, repairs, unit_mm: parsed.unit_mm, warnings })
 }
 
 /// Refuses files that are given by mistake: web pages, Git LFS pointers, STEP files.

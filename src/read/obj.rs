@@ -4,11 +4,11 @@ use glam::DVec3;
 
 use super::error::{Fault, Located};
 use super::obj_filter::{Filtered, filter};
-use super::{Draft, text};
+use super::{Parsed, text};
 use crate::model::mesh::{MeshError, PolygonSoup};
 
 /// Reads decoded OBJ text.
-pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     let filtered = filter(bytes)?;
     if filtered.n_faces == 0 && filtered.n_segments == 0 && looks_binary(bytes) {
         return Err(Fault::NotText("OBJ").into());
@@ -23,12 +23,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     }
     soup.parts = filtered.parts;
     soup.corner_normals = filtered.normals.of_corners();
-    let mut draft = Draft {
+    let mut parsed = Parsed {
         unused_vertices: filtered.n_vertices.saturating_sub(soup.positions.len()),
         notices: filtered.notices,
         degenerate_faces: filtered.n_degenerate,
         first_degenerate_line: filtered.first_degenerate_line,
-        ..Draft::default()
+        ..Parsed::default()
     };
     // Those that come back are in use: the filter gave each its number in place of a coordinate.
     let unsound = soup.positions.iter().find(|position| !position.is_finite());
@@ -37,8 +37,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     {
         return Err(Located::at(line, fault));
     }
-    draft.soup = soup;
-    Ok(draft)
+    parsed.soup = soup;
+    Ok(parsed)
 }
 
 fn looks_binary(bytes: &[u8]) -> bool {

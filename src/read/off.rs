@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::Draft;
+use super::Parsed;
 use super::error::{Fault, Located};
 use super::parts::{PartTable, color_of_parts, mean_color};
 use super::text::{Words, number, shown};
@@ -32,14 +32,14 @@ fn keyword(word: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// Reads decoded text.
-pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     let mut words = Words::new(bytes, Some(b'#'));
     let header = read_header(&mut words)?;
-    let mut draft = Draft::default();
+    let mut parsed = Parsed::default();
     let mut vertex_colors = Vec::new();
     for vertex in 0..header.n_vertices {
         let first = first_on_line(&mut words, "vertices", header.n_vertices, vertex)?;
-        read_vertex(&mut words, first, &mut draft).map_err(|f| Located::at(words.line(), f))?;
+        read_vertex(&mut words, first, &mut parsed).map_err(|f| Located::at(words.line(), f))?;
         if header.has_vertex_colors {
             for _ in 0..header.n_between {
                 words.next_on_line();
@@ -51,25 +51,25 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
     let mut parts = PartTable::default();
     for face in 0..header.n_faces {
         let first = first_on_line(&mut words, "faces", header.n_faces, face)?;
-        let start = draft.soup.corners.len();
-        read_face(&mut words, first, &mut draft).map_err(|f| Located::at(words.line(), f))?;
-        let corners = draft.soup.corners[start..].iter();
+        let start = parsed.soup.corners.len();
+        read_face(&mut words, first, &mut parsed).map_err(|f| Located::at(words.line(), f))?;
+        let corners = parsed.soup.corners[start..].iter();
         if corners.len() > 0 {
             let color = read_color(&mut words).or_else(|| {
                 mean_color(
                     corners.filter_map(|&v| vertex_colors.get(v as usize).copied().flatten()),
                 )
             });
-            draft.soup.face_parts.push(parts.index_of_color(color));
+            parsed.soup.face_parts.push(parts.index_of_color(color));
         }
         words.skip_line();
     }
-    draft.set_parts(parts);
+    parsed.set_parts(parts);
     let start = words.clone();
     if words.next().is_some() {
-        draft.notices.push(Notice::TrailingBytes { count: start.rest().trim_ascii().len() });
+        parsed.notices.push(Notice::TrailingBytes { count: start.rest().trim_ascii().len() });
     }
-    Ok(draft)
+    Ok(parsed)
 }
 
 /// What the first lines say.
@@ -139,7 +139,7 @@ fn read_color(words: &mut Words<'_>) -> Option<[u8; 3]> {
     Some(color_of_parts(if is_whole { color.map(|part| part / 255.0) } else { color }))
 }
 
-fn read_vertex(words: &mut Words<'_>, first: &[u8], draft: &mut Draft) -> Result<(), Fault> {
+fn read_vertex(words: &mut Words<'_>, first: &[u8], parsed: &mut Parsed) -> Result<(), Fault> {
     let mut point = [0.0; 3];
     let mut not_finite = None;
     for (i, coordinate) in point.iter_mut().enumerate() {
@@ -154,9 +154,9 @@ fn read_vertex(words: &mut Words<'_>, first: &[u8], draft: &mut Draft) -> Result
         };
     }
     if let Some(fault) = not_finite {
-        draft.leave_unsound_vertex(Some(words.line()), fault);
+        parsed.leave_unsound_vertex(Some(words.line()), fault);
     }
-    draft.soup.positions.push(DVec3::from_array(point));
+    parsed.soup.positions.push(DVec3::from_array(point));
     Ok(())
 }
 
@@ -191,12 +191,12 @@ fn first_on_line<'a>(
     })
 }
 
-fn read_face(words: &mut Words<'_>, first: &[u8], draft: &mut Draft) -> Result<(), Fault> {
+fn read_face(words: &mut Words<'_>, first: &[u8], parsed: &mut Parsed) -> Result<(), Fault> {
     let n_corners = natural(first).ok_or_else(|| Fault::Unexpected {
         expected: "the number of corners of a face",
         found: shown(first),
     })?;
-    let soup = &mut draft.soup;
+    let soup = &mut parsed.soup;
     let start = soup.corners.len();
     let vertices = soup.positions.len();
     for found in 0..n_corners {
@@ -214,7 +214,7 @@ fn read_face(words: &mut Words<'_>, first: &[u8], draft: &mut Draft) -> Result<(
     }
     if n_corners < 3 {
         soup.corners.truncate(start);
-        draft.leave_out_face(Some(words.line()));
+        parsed.leave_out_face(Some(words.line()));
     } else {
         soup.face_starts.push(soup.corners.len() as u32);
     }

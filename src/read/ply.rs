@@ -13,7 +13,7 @@ use ply_rs_bw::ply::{
     ScalarType,
 };
 
-use super::Draft;
+use super::Parsed;
 use super::error::{Fault, Located};
 use super::parts::{PartTable, color_of_parts, mean_color};
 use super::text::{Words, shown};
@@ -164,7 +164,7 @@ impl PropertyAccess for Skipped {
 }
 
 /// Reads PLY of any encoding.
-pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let bytes = &*with_line_feeds(bytes);
     let mut reader = Reader::new(bytes);
@@ -175,24 +175,24 @@ pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
         widen_floats(&mut header);
     }
     let n_vertices = header.elements.get("vertex").map_or(0, |element| element.count);
-    let mut draft = Draft::default();
+    let mut parsed = Parsed::default();
     let mut vertex_colors = Vec::new();
     let mut face_colors = Vec::new();
     for element in header.elements.values() {
         let mut batches = Batches { reader: &mut reader, header: &header, element, done: 0 };
         match element.name.as_str() {
-            "vertex" => read_vertices(&mut batches, &mut draft, &mut vertex_colors)?,
-            "face" => read_faces(&mut batches, n_vertices, &mut draft, &mut face_colors)?,
-            "edge" if has_ends(element) => read_edges(&mut batches, n_vertices, &mut draft)?,
+            "vertex" => read_vertices(&mut batches, &mut parsed, &mut vertex_colors)?,
+            "face" => read_faces(&mut batches, n_vertices, &mut parsed, &mut face_colors)?,
+            "edge" if has_ends(element) => read_edges(&mut batches, n_vertices, &mut parsed)?,
             _ => batches.skip()?,
         }
     }
-    color_faces(&mut draft, &face_colors, &vertex_colors);
+    color_faces(&mut parsed, &face_colors, &vertex_colors);
     let rest = if is_text { reader.get_ref().trim_ascii() } else { reader.get_ref() };
     if !rest.is_empty() {
-        draft.notices.push(Notice::TrailingBytes { count: rest.len() });
+        parsed.notices.push(Notice::TrailingBytes { count: rest.len() });
     }
-    Ok(draft)
+    Ok(parsed)
 }
 
 /// Text whose lines end in CR alone, with LF instead; other text is unchanged.
@@ -333,17 +333,17 @@ fn located(error: ParseError) -> Located {
 
 fn read_vertices(
     batches: &mut Batches<'_, '_>,
-    draft: &mut Draft,
+    parsed: &mut Parsed,
     colors: &mut Vec<[u8; 3]>,
 ) -> Result<(), Located> {
     while let Some((line, vertices)) = batches.next::<Vertex>()? {
         for (i, Vertex { position, color }) in vertices.into_iter().enumerate() {
             if !position.is_finite() {
-                let index = draft.soup.positions.len() + 1;
+                let index = parsed.soup.positions.len() + 1;
                 let fault = Fault::ElementNotFinite { element: "vertex", index };
-                draft.leave_unsound_vertex(batches.line(line, i), fault);
+                parsed.leave_unsound_vertex(batches.line(line, i), fault);
             }
-            draft.soup.positions.push(position);
+            parsed.soup.positions.push(position);
             colors.extend(color.bytes());
         }
     }
@@ -353,7 +353,7 @@ fn read_vertices(
 fn read_edges(
     batches: &mut Batches<'_, '_>,
     n_vertices: usize,
-    draft: &mut Draft,
+    parsed: &mut Parsed,
 ) -> Result<(), Located> {
     while let Some((line, edges)) = batches.next::<Edge>()? {
         for (i, Edge { ends }) in edges.into_iter().enumerate() {
@@ -362,7 +362,7 @@ fn read_edges(
             for (end, number) in wire.iter_mut().zip(ends) {
                 *end = vertex_index(number, n_vertices).map_err(|fault| Located { line, fault })?;
             }
-            draft.soup.wires.push(wire);
+            parsed.soup.wires.push(wire);
         }
     }
     Ok(())
@@ -375,8 +375,8 @@ fn vertex_index(number: i64, n_vertices: usize) -> Result<u32, Fault> {
 }
 
 /// Assigns each face to the part with its color, or with the mean color of its corners.
-fn color_faces(draft: &mut Draft, of_faces: &[Option<[u8; 3]>], of_vertices: &[[u8; 3]]) {
-    let soup = &draft.soup;
+fn color_faces(parsed: &mut Parsed, of_faces: &[Option<[u8; 3]>], of_vertices: &[[u8; 3]]) {
+    let soup = &parsed.soup;
     let has_vertex_colors = !of_vertices.is_empty() && of_vertices.len() == soup.positions.len();
     if !has_vertex_colors && of_faces.iter().all(Option::is_none) {
         return;
@@ -391,32 +391,32 @@ fn color_faces(draft: &mut Draft, of_faces: &[Option<[u8; 3]>], of_vertices: &[[
         };
         face_parts.push(parts.index_of_color(of_face.or_else(of_corners)));
     }
-    draft.soup.face_parts = face_parts;
-    draft.set_parts(parts);
+    parsed.soup.face_parts = face_parts;
+    parsed.set_parts(parts);
 }
 
 fn read_faces(
     batches: &mut Batches<'_, '_>,
     n_vertices: usize,
-    draft: &mut Draft,
+    parsed: &mut Parsed,
     colors: &mut Vec<Option<[u8; 3]>>,
 ) -> Result<(), Located> {
     while let Some((line, faces)) = batches.next::<Face>()? {
         for (i, Face { corners, color }) in faces.into_iter().enumerate() {
             let line = batches.line(line, i);
-            let start = draft.soup.corners.len();
+            let start = parsed.soup.corners.len();
             for corner in corners {
                 let index = vertex_index(corner, n_vertices);
-                draft.soup.corners.push(index.map_err(|fault| Located { line, fault })?);
+                parsed.soup.corners.push(index.map_err(|fault| Located { line, fault })?);
             }
-            if draft.soup.corners.len() >= u32::MAX as usize {
+            if parsed.soup.corners.len() >= u32::MAX as usize {
                 return Err(Fault::Mesh(MeshError::TooLarge).into());
             }
-            if draft.soup.corners.len() < start + 3 {
-                draft.soup.corners.truncate(start);
-                draft.leave_out_face(line);
+            if parsed.soup.corners.len() < start + 3 {
+                parsed.soup.corners.truncate(start);
+                parsed.leave_out_face(line);
             } else {
-                draft.soup.face_starts.push(draft.soup.corners.len() as u32);
+                parsed.soup.face_starts.push(parsed.soup.corners.len() as u32);
                 colors.push(color.bytes());
             }
         }

@@ -16,7 +16,7 @@
 
 use glam::DVec3;
 
-use super::Draft;
+use super::Parsed;
 use super::error::{Fault, Located};
 use super::parts::PartTable;
 use super::text::{Words, decode, name, number, shown};
@@ -38,7 +38,7 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 ///
 /// The length decides first: a file exactly as long as its count of triangles requires is binary, even if
 /// it begins with "solid".
-pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     let text = decode(bytes);
     if !is_whole(bytes) && is_text(&text) {
         read_text(&text)
@@ -83,7 +83,7 @@ fn is_comment(word: &[u8]) -> bool {
     word.starts_with(b"#") || word.starts_with(b";") || word.starts_with(b"//")
 }
 
-fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
+fn read_binary(bytes: &[u8]) -> Result<Parsed, Fault> {
     let Some(stated) = triangle_count(bytes) else {
         return Err(Fault::Truncated {
             expected: format!("at least {HEADER} bytes of a binary STL or the word `solid`"),
@@ -92,11 +92,11 @@ fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
     };
     let (triangles, rest) = bytes[HEADER..].as_chunks::<TRIANGLE>();
     let present = triangles.len() as u64;
-    let mut draft = Draft::default();
+    let mut parsed = Parsed::default();
     let is_exact = stated > 0 && stated <= present;
     let n_triangles = if is_exact { stated } else { present };
     if !is_exact && present > 0 {
-        draft.notices.push(Notice::WrongCount { stated, present, element: "triangle" });
+        parsed.notices.push(Notice::WrongCount { stated, present, element: "triangle" });
     }
     let triangles = &triangles[..n_triangles as usize];
     if triangles.len() >= (u32::MAX / 3) as usize {
@@ -104,7 +104,7 @@ fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
     }
     let trailing = (present - n_triangles) as usize * TRIANGLE + rest.len();
     if trailing > 0 {
-        draft.notices.push(Notice::TrailingBytes { count: trailing });
+        parsed.notices.push(Notice::TrailingBytes { count: trailing });
     }
     let n_corners = 3 * triangles.len() as u32;
     let mut positions = Vec::with_capacity(n_corners as usize);
@@ -118,14 +118,14 @@ fn read_binary(bytes: &[u8]) -> Result<Draft, Fault> {
         }
         positions.extend_from_slice(&corners);
     }
-    draft.soup = PolygonSoup {
+    parsed.soup = PolygonSoup {
         positions,
         corners: (0..n_corners).collect(),
         face_starts: (0..=n_corners).step_by(3).collect(),
         ..PolygonSoup::default()
     };
-    color_triangles(bytes, triangles, &mut draft.soup);
-    Ok(draft)
+    color_triangles(bytes, triangles, &mut parsed.soup);
+    Ok(parsed)
 }
 
 /// Assigns each triangle to the part with its color, if any has one.
@@ -168,11 +168,11 @@ fn magics_color(header: &[u8]) -> Option<[u8; 3]> {
 }
 
 /// Reads any number of `solid NAME … endsolid`, in any letter case.
-fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
-    let mut draft = Draft::default();
+fn read_text(bytes: &[u8]) -> Result<Parsed, Located> {
+    let mut parsed = Parsed::default();
     let mut words = Words::new(bytes, None);
     let mut solids = Vec::new();
-    skip_comments(&mut words, &mut draft);
+    skip_comments(&mut words, &mut parsed);
     loop {
         let start = words.clone();
         let Some(word) = words.next() else { break };
@@ -181,24 +181,24 @@ fn read_text(bytes: &[u8]) -> Result<Draft, Located> {
                 return Err(unexpected(&words, "`solid`", word));
             }
             let count = start.rest().trim_ascii().len();
-            draft.notices.push(Notice::TrailingBytes { count });
+            parsed.notices.push(Notice::TrailingBytes { count });
             break;
         }
         let group = name(words.rest_of_line());
-        read_solid(&mut words, &mut draft)?;
-        draft.soup.face_parts.resize(draft.soup.n_faces(), solids.len() as u32);
+        read_solid(&mut words, &mut parsed)?;
+        parsed.soup.face_parts.resize(parsed.soup.n_faces(), solids.len() as u32);
         solids.push(MeshPart { group, ..MeshPart::default() });
     }
     if solids.len() == 1 && solids.iter().all(|solid| solid.group.is_empty()) {
-        draft.soup.face_parts.clear();
+        parsed.soup.face_parts.clear();
     } else {
-        draft.soup.parts = solids;
+        parsed.soup.parts = solids;
     }
-    Ok(draft)
+    Ok(parsed)
 }
 
 /// Skips comment lines at the start, with a notice.
-fn skip_comments(words: &mut Words<'_>, draft: &mut Draft) {
+fn skip_comments(words: &mut Words<'_>, parsed: &mut Parsed) {
     let mut first_line = None;
     loop {
         let start = words.clone();
@@ -210,17 +210,19 @@ fn skip_comments(words: &mut Words<'_>, draft: &mut Draft) {
         words.rest_of_line();
     }
     if let Some(line) = first_line {
-        draft.notices.push(Notice::Irregular { line, what: "a comment before `solid` is skipped" });
+        parsed
+            .notices
+            .push(Notice::Irregular { line, what: "a comment before `solid` is skipped" });
     }
 }
 
 /// Reads facets up to and including the line of `endsolid`, or to the end of the file.
-fn read_solid(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
+fn read_solid(words: &mut Words<'_>, parsed: &mut Parsed) -> Result<(), Located> {
     loop {
         let start = words.clone();
         let Some(word) = words.next() else {
             let what = "`endsolid` is missing at the end; what is there is read";
-            draft.notices.push(Notice::Irregular { line: words.line(), what });
+            parsed.notices.push(Notice::Irregular { line: words.line(), what });
             return Ok(());
         };
         let line = words.line();
@@ -230,7 +232,7 @@ fn read_solid(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
         }
         if begins_with(word, b"endsolid") {
             let what = "a name joined to `endsolid` is read as `endsolid`";
-            draft.notices.push(Notice::Irregular { line, what });
+            parsed.notices.push(Notice::Irregular { line, what });
             words.rest_of_line();
             return Ok(());
         }
@@ -241,13 +243,13 @@ fn read_solid(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
                 return Err(unexpected(words, "`endsolid`", next));
             }
             let what = "`end solid` is read as `endsolid`";
-            draft.notices.push(Notice::Irregular { line, what });
+            parsed.notices.push(Notice::Irregular { line, what });
             words.rest_of_line();
             return Ok(());
         }
         if word.eq_ignore_ascii_case(b"solid") {
             let what = "`endsolid` is missing before `solid`; what is there is read";
-            draft.notices.push(Notice::Irregular { line, what });
+            parsed.notices.push(Notice::Irregular { line, what });
             *words = start;
             return Ok(());
         }
@@ -261,7 +263,7 @@ fn read_solid(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
         // The normal is not needed, and often wrong or not even a number.
         while !required(words, "`outer loop`")?.eq_ignore_ascii_case(b"outer") {}
         keyword(words, "`loop`", b"loop")?;
-        read_loop(words, draft)?;
+        read_loop(words, parsed)?;
         keyword(words, "`endfacet`", b"endfacet")?;
     }
 }
@@ -271,9 +273,9 @@ fn begins_with(word: &[u8], start: &[u8]) -> bool {
 }
 
 /// Reads the corners of one facet up to and including `endloop`.
-fn read_loop(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
+fn read_loop(words: &mut Words<'_>, parsed: &mut Parsed) -> Result<(), Located> {
     let line = words.line();
-    let soup = &mut draft.soup;
+    let soup = &mut parsed.soup;
     let first = soup.positions.len();
     loop {
         let word = required(words, "`vertex` or `endloop`")?;
@@ -295,7 +297,7 @@ fn read_loop(words: &mut Words<'_>, draft: &mut Draft) -> Result<(), Located> {
     }
     if soup.positions.len() < first + 3 {
         soup.positions.truncate(first);
-        draft.leave_out_face(Some(line));
+        parsed.leave_out_face(Some(line));
     } else {
         soup.corners.extend(first as u32..soup.positions.len() as u32);
         soup.face_starts.push(soup.corners.len() as u32);

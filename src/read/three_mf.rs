@@ -20,7 +20,7 @@ use std::collections::HashMap;
 
 use glam::DAffine3;
 
-use super::Draft;
+use super::Parsed;
 use super::error::{Fault, Located};
 use super::parts::PartTable;
 use crate::model::mesh::{MeshError, MeshPart};
@@ -44,17 +44,17 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 }
 
 /// Reads an archive.
-pub(super) fn read(bytes: &[u8]) -> Result<Draft, Located> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     read_archive(bytes).map_err(Into::into)
 }
 
-fn read_archive(bytes: &[u8]) -> Result<Draft, Fault> {
+fn read_archive(bytes: &[u8]) -> Result<Parsed, Fault> {
     let mut archive = Archive::open(bytes)?;
     let root = archive.root_part()?;
     let mut builder = Builder {
         archive,
         parts: HashMap::new(),
-        draft: Draft::default(),
+        parsed: Parsed::default(),
         table: PartTable::default(),
         n_bytes: 0,
         n_triangles: 0,
@@ -62,22 +62,22 @@ fn read_archive(bytes: &[u8]) -> Result<Draft, Fault> {
     };
     builder.load(&root)?;
     let Some(model) = builder.parts.get(&root) else { return Err(Fault::Empty) };
-    builder.draft.unit_mm = Some(model.unit_mm);
+    builder.parsed.unit_mm = Some(model.unit_mm);
     let items = model.items.clone();
     for item in &items {
         builder.add(&root, item, DAffine3::IDENTITY, &mut Vec::new())?;
     }
-    let Builder { mut draft, table, .. } = builder;
-    draft.set_parts(table);
-    Ok(draft)
+    let Builder { mut parsed, table, .. } = builder;
+    parsed.set_parts(table);
+    Ok(parsed)
 }
 
-/// Puts build items into a draft.
+/// Puts build items into what the file holds.
 struct Builder<'a> {
     archive: Archive<'a>,
     /// The model parts read so far, by their names.
     parts: HashMap<String, ModelPart>,
-    draft: Draft,
+    parsed: Parsed,
     table: PartTable,
     /// Bytes of XML read so far.
     n_bytes: u64,
@@ -140,7 +140,7 @@ impl Builder<'_> {
         if self.n_triangles > FREE_TRIANGLES + TRIANGLES_PER_BYTE * self.n_bytes {
             return Err(Fault::TooManyInstances);
         }
-        let soup = &mut self.draft.soup;
+        let soup = &mut self.parsed.soup;
         let first = soup.positions.len();
         let n_corners = soup.corners.len() + 3 * object.triangles.len();
         if n_corners.max(first + object.positions.len()) >= u32::MAX as usize {

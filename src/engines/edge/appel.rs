@@ -80,7 +80,7 @@ use box_join::Pairs;
 use cutting::{Stars, cutting_edges};
 use near::near_triangles;
 use places::Places;
-use propagate::{Base, Levels};
+use propagate::{Base, LayerCounts};
 use rayon::prelude::*;
 use start::{is_plain, layers_beyond, local_layers};
 use trace::{Change, Surroundings, Trace};
@@ -307,7 +307,7 @@ impl Chunk {
 struct Starts {
     /// On the left and right; `None` when the checksum failed.
     layers: Vec<Option<[i32; 2]>>,
-    levels: Levels,
+    levels: LayerCounts,
     is_irregular: Vec<bool>,
     n_sight_lines: u64,
     n_failures: u64,
@@ -324,7 +324,7 @@ impl Starts {
         let n_vertices = view.scene().mesh().positions().len();
         let mut starts = Self {
             layers: vec![None; segments.len()],
-            levels: Levels::new(n_vertices),
+            levels: LayerCounts::new(n_vertices),
             is_irregular: vec![false; n_vertices],
             n_sight_lines: 0,
             n_failures: 0,

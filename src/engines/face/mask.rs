@@ -66,7 +66,7 @@ impl FragmentsOf {
 
 /// The mask of one view, and the fragments shown so far.
 pub(super) struct Mask<'a> {
-    view: View<'a>,
+    view: PaintedView<'a>,
     of: &'a FragmentsOf,
     missing: FragmentsOf,
     occupancy: Occupancy,
@@ -84,7 +84,7 @@ impl<'a> Mask<'a> {
         of: &'a FragmentsOf,
         n_fragments: usize,
     ) -> Self {
-        let view = View {
+        let view = PaintedView {
             scene,
             easel: Easel::new(scene, camera),
             near: planes.has_near_plane().then(|| planes.plane(PlaneName::Near)),
@@ -149,14 +149,14 @@ impl<'a> Mask<'a> {
 }
 
 /// A scene as one camera sees it.
-struct View<'a> {
+struct PaintedView<'a> {
     scene: &'a Scene,
     easel: Easel<'a>,
     planes: &'a Planes<'a>,
     near: Option<Plane>,
 }
 
-impl View<'_> {
+impl PaintedView<'_> {
     /// A quadtree around the images of all vertices in front of the eye.
     fn empty(&self) -> Occupancy {
         let positions = self.scene.mesh().positions();
@@ -287,8 +287,12 @@ mod tests {
         };
         let (near, far) = (camera(1.0), camera(2f64.powi(40)));
         let planes = Planes::new(scene.mesh().positions(), scene.triangles()).seen_by(&far);
-        let view =
-            View { scene: &scene, easel: Easel::new(&scene, &far), planes: &planes, near: None };
+        let view = PaintedView {
+            scene: &scene,
+            easel: Easel::new(&scene, &far),
+            planes: &planes,
+            near: None,
+        };
         // Covered up to 0.5 in the image, to the right.
         let mut occupancy = Occupancy::new(DVec2::NEG_ONE, DVec2::ONE);
         let right = 0.5 + 1.5 * occupancy.rim();

@@ -58,7 +58,7 @@ impl LatticeBox {
     /// The same with all depths made one.
     #[must_use]
     pub(super) fn flat(self) -> Self {
-        let Place { low, high } = Place { low: self.low, high: self.high }.flat();
+        let LatticeRange { low, high } = LatticeRange { low: self.low, high: self.high }.flat();
         Self { low, high, ..self }
     }
 
@@ -105,14 +105,14 @@ impl Lattice {
 
     /// The place of a box, rounded outwards; what lies beside the lattice is moved to its border.
     #[inline]
-    pub(super) fn place(&self, [low, high]: [DVec3; 2]) -> Place {
+    pub(super) fn place(&self, [low, high]: [DVec3; 2]) -> LatticeRange {
         // Differences and products are off by far less than a place, and so is cutting off
         // fractions of places.
         let low = (low - self.origin) * self.places_per_unit + 1.0;
         let high = (high - self.origin) * self.places_per_unit + 3.0;
         let last = f64::from(LAST_PLACE);
         let to_places = |v: DVec3| v.to_array().map(|x| x.clamp(0.0, last) as u32);
-        Place { low: to_places(low), high: to_places(high) }
+        LatticeRange { low: to_places(low), high: to_places(high) }
     }
 
     /// The highest place along z of points up to `z`.
@@ -124,12 +124,12 @@ impl Lattice {
 
 /// A closed box on the lattice.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Place {
+pub(super) struct LatticeRange {
     pub low: [u32; 3],
     pub high: [u32; 3],
 }
 
-impl Place {
+impl LatticeRange {
     /// The smallest box that holds all of the boxes.
     #[inline]
     pub(super) fn around<const N: usize>(places: [&Self; N]) -> Self {

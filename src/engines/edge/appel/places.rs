@@ -2,7 +2,7 @@
 
 use super::super::rounding::Rounding;
 use super::super::segment::Segment;
-use super::box_join::{Lattice, LatticeBox, Place, box_of_all};
+use super::box_join::{Lattice, LatticeBox, LatticeRange, box_of_all};
 use crate::camera::ImagePoint;
 use crate::classify::ViewedScene;
 use crate::predicates::Viewpoint;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// Where the images and the depths of the vertices lie on a lattice over all segments.
 pub(super) struct Places {
     pub lattice: Lattice,
-    vertices: Vec<Place>,
+    vertices: Vec<LatticeRange>,
 }
 
 impl Places {
@@ -58,7 +58,7 @@ impl Places {
 
     /// The place around some vertices.
     #[inline]
-    pub(super) fn around<const N: usize>(&self, corners: [u32; N]) -> Place {
-        Place::around(corners.map(|corner| &self.vertices[corner as usize]))
+    pub(super) fn around<const N: usize>(&self, corners: [u32; N]) -> LatticeRange {
+        LatticeRange::around(corners.map(|corner| &self.vertices[corner as usize]))
     }
 }

@@ -6,7 +6,7 @@
 
 /// Vertices in sets, each with its difference to a vertex that represents the set.
 #[derive(Debug)]
-pub(super) struct Levels {
+pub(super) struct LayerCounts {
     parent: Vec<u32>,
     /// The vertex's number less its parent's.
     above: Vec<i32>,
@@ -25,7 +25,7 @@ pub(super) enum Base {
     Contradicted,
 }
 
-impl Levels {
+impl LayerCounts {
     /// `n` vertices, each alone.
     pub(super) fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect(), above: vec![0; n], base: vec![Base::Unknown; n] }
@@ -109,11 +109,11 @@ impl Levels {
 
 #[cfg(test)]
 mod tests {
-    use super::{Base, Levels};
+    use super::{Base, LayerCounts};
 
     #[test]
     fn differences_add_up_along_any_way_and_contradictions_are_found() {
-        let mut levels = Levels::new(6);
+        let mut levels = LayerCounts::new(6);
         assert!(levels.join(4, 3, 2));
         assert!(levels.join(1, 2, -1));
         assert!(levels.join(3, 2, 5));

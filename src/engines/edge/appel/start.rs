@@ -4,7 +4,7 @@ use super::super::occluders::Occluders;
 use super::super::rounding::Rounding;
 use super::super::segment::Segment;
 use super::super::shadow::{Sides, side_of};
-use super::box_join::{LatticeBox, Place, meeting_pairs};
+use super::box_join::{LatticeBox, LatticeRange, meeting_pairs};
 use super::cutting::Stars;
 use super::places::Places;
 use crate::classify::ViewedScene;
@@ -148,7 +148,7 @@ pub(super) fn layers_beyond<'s>(
     let questions: Vec<(Option<&Segment>, usize)> = ends.collect();
     let mut layers = vec![[0; 2]; questions.len()];
     // Each triangle is tested for being in front, so depths are not needed here.
-    let flat = |place: Place, number: u32| place.flat().of(number);
+    let flat = |place: LatticeRange, number: u32| place.flat().of(number);
     let first: Vec<LatticeBox> = (0..)
         .zip(&questions)
         .filter_map(|(i, &(segment, end))| {
