@@ -281,12 +281,12 @@ impl Beside {
 /// For each point the direction of its stroke over a stretch around the segment that begins there.
 fn trends(draft: &Draft, ends: &Ends, reach: f64) -> Vec<DVec2> {
     let points = draft.points();
-    let mut trends = vec![DVec2::ZERO; points.len()];
+    let along = |i: usize| ends.along(i as u32);
+    let mut trends = Vec::with_capacity(points.len());
     for stroke in 0..draft.len() {
         let range = draft.range(stroke);
-        let along = |i: usize| ends.along(i as u32);
         let (mut first, mut last) = (range.start, range.start);
-        for i in range.start..range.end - 1 {
+        trends.extend((range.start..range.end - 1).map(|i| {
             let middle = 0.5 * (along(i) + along(i + 1));
             while along(first + 1) <= middle - reach {
                 first += 1;
@@ -298,8 +298,9 @@ fn trends(draft: &Draft, ends: &Ends, reach: f64) -> Vec<DVec2> {
                 let t = ((s - along(from)) / (along(from + 1) - along(from))).clamp(0.0, 1.0);
                 points[from].at.lerp(points[from + 1].at, t)
             };
-            trends[i] = at(last - 1, middle + reach) - at(first, middle - reach);
-        }
+            at(last - 1, middle + reach) - at(first, middle - reach)
+        }));
+        trends.push(DVec2::ZERO);
     }
     trends
 }

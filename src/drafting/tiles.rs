@@ -225,10 +225,10 @@ mod tests {
                 assert!(tiles.has_any_in([0, 0], [columns - 1, rows - 1]));
             }
             tiles.set_bits(bits);
-            for column in 0..columns {
-                for row in 0..rows {
+            for (column, is_set) in is_set.iter().enumerate() {
+                for (row, &is_set) in is_set.iter().enumerate() {
                     let exists = tiles.has_any_in([column, row], [column, row]);
-                    assert_eq!(tiles.has([column, row]), exists && is_set[column][row]);
+                    assert_eq!(tiles.has([column, row]), exists && is_set);
                 }
             }
             let grown = tiles.grown(radius).inverted().grown(radius);
