@@ -47,7 +47,8 @@ impl Normals {
             let index = (number as usize).checked_sub(1);
             index.and_then(|index| self.vectors.get(index)).copied().unwrap_or_default()
         };
-        self.corners.iter().map(normal).collect()
+        let normals: Vec<[f32; 3]> = self.corners.iter().map(normal).collect();
+        if normals.iter().all(|&normal| normal == [0.0; 3]) { Vec::new() } else { normals }
     }
 
     /// The normal's number, counted from 1. Negative ones count back from the last normal.
