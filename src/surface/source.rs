@@ -44,7 +44,7 @@ pub struct Surface {
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
     pub(super) z: Option<(f64, f64)>,
-    /// What becomes of heights outside.
+    /// What to do with heights outside that.
     pub(super) outside: Outside,
     pub(super) samples: (usize, usize),
     pub(super) aspect: Aspect,
@@ -99,7 +99,7 @@ pub enum FamilyError {
     Parameters(#[from] ParameterError),
 }
 
-/// What becomes of heights outside of the range of z.
+/// What to do with heights outside the range of z.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Outside {
     /// The surface is cut off.
@@ -363,7 +363,7 @@ impl Surface {
         self
     }
 
-    /// What becomes of heights outside of the range of z.
+    /// What to do with heights outside the range of z.
     ///
     /// ```
     /// use hiddenline::{Outside, Surface};

@@ -157,7 +157,7 @@ impl SurfaceInput {
         }
     }
 
-    /// The pens that were given, and one for each sheet if sheets are told apart.
+    /// The pens from the command line, and one for each sheet where sheets have pens of their own.
     pub(super) fn pens(
         &self,
         plotting: &Plotting,

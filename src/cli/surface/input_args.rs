@@ -70,7 +70,7 @@ pub(in crate::cli) struct SurfaceInputArgs {
     /// Range of heights, as for x; the surface is cut off outside [default: all, but for poles]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     z: Option<(f64, f64)>,
-    /// What becomes of heights outside of --z
+    /// What to do with heights outside --z
     #[arg(long, value_parser = one_of::<Outside>(), default_value = Outside::Cut.name())]
     z_outside: Outside,
     /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]

@@ -1,20 +1,24 @@
 //! `--set` for formulas, and `--view-height` for the page.
 
 use std::fs;
+use std::path::Path;
 
 use hiddenline::stages::surface::formula::{Formula, Parameter, ParameterError, Variables};
 
 use super::{CUBE, assert_fails, hiddenline, text};
 
+/// What `surface` writes as JSON.
+fn drawn(folder: &Path, arguments: &[&str]) -> Vec<u8> {
+    let all = [&["surface", "--samples", "9", "--format", "json"], arguments].concat();
+    let output = hiddenline(folder, &all);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    output.stdout
+}
+
 #[test]
 fn a_parameter_is_the_number_that_it_stands_for() {
     let folder = tempfile::tempdir().unwrap();
-    let drawn = |arguments: &[&str]| {
-        let all = [&["surface", "--samples", "9", "--format", "json"], arguments].concat();
-        let output = hiddenline(folder.path(), &all);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        output.stdout
-    };
+    let drawn = |arguments: &[&str]| drawn(folder.path(), arguments);
     let in_numbers = drawn(&["1.5*sin(x)-(-0.25)*y", "--where", "x<1.5"]);
     let set = ["--set", "a=1.5", "--set", "off_set2=-1/4"];
     let named = drawn(&[&["a*sin(x)-off_set2*y", "--where", "x<a"][..], &set].concat());
@@ -42,12 +46,7 @@ fn a_parameter_is_the_number_that_it_stands_for() {
 #[test]
 fn each_value_of_a_parameter_is_a_sheet() {
     let folder = tempfile::tempdir().unwrap();
-    let drawn = |arguments: &[&str]| {
-        let all = [&["surface", "--samples", "9", "--format", "json"], arguments].concat();
-        let output = hiddenline(folder.path(), &all);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        output.stdout
-    };
+    let drawn = |arguments: &[&str]| drawn(folder.path(), arguments);
     let sheets = drawn(&["1+sin(x)", "2+sin(x)", "3+sin(x)"]);
     assert!(sheets == drawn(&["a+sin(x)", "--for", "a=1,2,3"]));
     assert!(sheets == drawn(&["--for=a=1:3:1", "a+sin(x)"]));

@@ -105,7 +105,7 @@ impl Viewer {
         self.post("/api/draw", body.to_string().as_bytes())
     }
 
-    /// The first thing that a page is told.
+    /// The first event that a page receives.
     fn about(&self) -> Value {
         let mut events = self.events("test");
         events.next().unwrap()["about"].clone()
