@@ -5,8 +5,8 @@ use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, Projection};
 use hiddenline::stages::chain::grid_lines::{GridLines, strokes};
 use hiddenline::stages::engines::surface::{CellOrder, max_min};
-use hiddenline::stages::surface::Grid;
 use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{CutGrid, Grid, GridCuts};
 
 const SIZES: [usize; 4] = [150, 500, 1000, 2000];
 
@@ -41,5 +41,12 @@ fn visibility(bencher: Bencher, n: usize) {
 fn chaining(bencher: Bencher, n: usize) {
     let (grid, camera) = (sinc_hat(n), camera());
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
-    bencher.bench(|| strokes(&grid, &pieces, &camera, &GridLines::default()));
+    bencher.bench(|| {
+        strokes(
+            &CutGrid { grid: &grid, cuts: &GridCuts::NONE },
+            &pieces,
+            &camera,
+            &GridLines::default(),
+        )
+    });
 }

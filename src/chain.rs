@@ -80,7 +80,11 @@ pub fn chain(
     outline: Option<&Outline>,
     options: &ChainOptions,
 ) -> Strokes {
-    let pieces = pieces(view, visibility, outline, options);
+    join(&pieces(view, visibility, outline, options), options, outline.is_some())
+}
+
+/// Joins pieces into strokes; those of the outline are drawn apart if there is one.
+fn join(pieces: &[Piece], options: &ChainOptions, has_outline: bool) -> Strokes {
     let mut drawing = Strokes::default();
     if options.exact {
         pieces.iter().for_each(|piece| push(&mut drawing, piece, &piece.points));
@@ -90,19 +94,19 @@ pub fn chain(
     let is_visible = |piece: &Piece| (0, piece.qi.min(1));
     let mut is_short = vec![false; pieces.len()];
     let mut points = Vec::new();
-    let links = link(&pieces, is_visible);
+    let links = link(pieces, is_visible);
     if options.shortest > 0.0 {
         for_each_trail(&links, |trail| {
-            points_along(&pieces, trail, &mut points);
+            points_along(pieces, trail, &mut points);
             let first = &pieces[trail[0] as usize / 2];
             if first.qi == 0 && is_shorter(&points, options.shortest) {
                 trail.iter().for_each(|&end| is_short[end as usize / 2] = true);
             }
         });
     }
-    let is_apart = options.apart_by_kind || options.hidden_levels.is_some() || outline.is_some();
+    let is_apart = options.apart_by_kind || options.hidden_levels.is_some() || has_outline;
     let links = if is_apart {
-        link(&pieces, |piece| {
+        link(pieces, |piece| {
             let part = if options.apart_by_kind { piece.part } else { SurfacePart::default() };
             (class(piece.kind, piece.qi, piece.outline, options), part)
         })
@@ -113,7 +117,7 @@ pub fn chain(
         let first = &pieces[trail[0] as usize / 2];
         // Joined with others, one that is short by itself may begin a long one.
         if !trail.iter().all(|&end| is_short[end as usize / 2]) {
-            points_along(&pieces, trail, &mut points);
+            points_along(pieces, trail, &mut points);
             push(&mut drawing, first, &points);
         }
     });

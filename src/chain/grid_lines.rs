@@ -6,14 +6,15 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::pen_path::{LineStroke, order};
+use super::{ChainOptions, Piece, join};
 use crate::camera::{Camera, Frame, Projection};
-use crate::engines::surface::pieces::{LOWER, PARTLY, UPPER};
 use crate::engines::surface::{GridPieces, SurfaceSide, VisiblePiece};
+use crate::links::FREE;
 use crate::predicates::Sign;
 use crate::predicates::exact::{Towards, facing};
 use crate::strokes::{GridFamily, StrokeKind, Strokes, SurfacePart};
 use crate::surface::formula::Axis;
-use crate::surface::{Grid, Places};
+use crate::surface::{CutGrid, Grid, Places};
 
 /// So many grid lines are chained at a time, in parallel: many small lists at once would leave much memory
 /// in use after them.
@@ -35,20 +36,38 @@ pub struct GridLines<'a> {
     pub side: Option<SurfaceSide>,
     /// Two-point strokes, one for each visible piece of each edge, instead of chains.
     pub separate: bool,
+    /// Strokes of the cuts' own lines shorter than this are dropped, in image units.
+    pub shortest: f64,
 }
 
 impl Default for GridLines<'_> {
     fn default() -> Self {
         let (side, places) = (None, None);
-        Self { along_x: true, along_y: true, every: 1, places, side, separate: false }
+        Self {
+            along_x: true,
+            along_y: true,
+            every: 1,
+            places,
+            side,
+            separate: false,
+            shortest: 0.0,
+        }
     }
 }
 
-/// Draws the visible pieces. What lies nearer than the camera's near plane is cut off.
+/// Draws the visible pieces: those of grid lines, and then those of the lines that cells are cut along, as
+/// folds, which grid lines leave to them. What lies nearer than the camera's near plane is cut off.
 ///
 /// O(edges), in parallel; the order of strokes does not depend on the number of threads.
-pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLines) -> Strokes {
+pub fn strokes(cut: &CutGrid, pieces: &GridPieces, camera: &Camera, lines: &GridLines) -> Strokes {
+    let grid = cut.grid;
     let projector = Projector::new(camera);
+    let samples = 0..grid.zs().len() as u32;
+    let on_edges =
+        cut.cuts.lines().iter().filter(|ends| ends.iter().all(|end| samples.contains(end)));
+    let mut left_out: Vec<u32> = on_edges.filter_map(|ends| grid.edge(*ends)).collect();
+    left_out.sort_unstable();
+    let cut_lines = CutLines { cut, pieces, left_out: &left_out };
     let (nx, ny) = (grid.xs().len(), grid.ys().len());
     let chosen = |n: usize, axis: Axis| -> Vec<usize> {
         let every = lines.every.max(1);
@@ -81,7 +100,7 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLi
         let mut number = 0;
         for block in lines_of_family.chunks(TOGETHER) {
             let chains: Vec<Chains> =
-                block.par_iter().map(|line| line.chains(grid, pieces, &projector, lines)).collect();
+                block.par_iter().map(|line| line.chains(&cut_lines, &projector, lines)).collect();
             for (chains, line) in chains.iter().zip(number..) {
                 for (stroke, its_points) in chains.strokes(line) {
                     strokes.push(stroke);
@@ -109,7 +128,54 @@ pub fn strokes(grid: &Grid, pieces: &GridPieces, camera: &Camera, lines: &GridLi
             }
         }
     }
+    let options = ChainOptions {
+        hidden: false,
+        hidden_levels: None,
+        exact: lines.separate,
+        apart_by_kind: false,
+        shortest: lines.shortest,
+    };
+    drawing.append(&join(&pieces_of_lines(cut, pieces, &projector, lines.side), &options, false));
     drawing
+}
+
+/// The visible pieces of the lines that cells are cut along.
+fn pieces_of_lines(
+    cut: &CutGrid,
+    pieces: &GridPieces,
+    projector: &Projector,
+    side: Option<SurfaceSide>,
+) -> Vec<Piece> {
+    let mut found = Vec::new();
+    for &ends in cut.cuts.lines() {
+        let Some(edge) = cut.edge(ends) else { continue };
+        let [p, q] = ends.map(|end| cut.point(end));
+        for piece in pieces.of(edge).filter(|piece| side.is_none_or(|side| piece.side == side)) {
+            let Some((t0, t1)) = projector.kept(p, q, (piece.t0, piece.t1)) else { continue };
+            found.push(Piece {
+                kind: StrokeKind::Silhouette,
+                part: SurfacePart { sheet: 1, ..SurfacePart::default() },
+                qi: 0,
+                outline: false,
+                only_outline: false,
+                points: [t0, t1].map(|t| projector.between(p, q, t)),
+                depths: [0.0; 2],
+                ends: [
+                    if t0 == 0.0 { ends[0] } else { FREE },
+                    if t1 == 1.0 { ends[1] } else { FREE },
+                ],
+            });
+        }
+    }
+    found
+}
+
+/// Grid lines some of whose edges are in two pieces, or drawn as other lines.
+struct CutLines<'a> {
+    cut: &'a CutGrid<'a>,
+    pieces: &'a GridPieces,
+    /// The edges that are not drawn as grid lines, in rising order.
+    left_out: &'a [u32],
 }
 
 /// The camera with its frame.
@@ -134,6 +200,15 @@ impl Projector {
         let d = p - self.eye;
         let image = DVec2::new(d.dot(self.frame.right), d.dot(self.frame.upward));
         if self.near.is_some() { image / d.dot(self.frame.forward) } else { image }
+    }
+
+    /// The image of a point on the way from `p` to `q`.
+    fn between(&self, p: DVec3, q: DVec3, t: f64) -> DVec2 {
+        match t {
+            0.0 => self.image(p),
+            1.0 => self.image(q),
+            t => self.image(p + t * (q - p)),
+        }
     }
 
     /// Cuts a range of the segment from `p` to `q` to what lies beyond the near plane.
@@ -221,63 +296,74 @@ impl GridLine {
         Some(if is_upper { SurfaceSide::Upper } else { SurfaceSide::Lower })
     }
 
-    fn chains(
-        &self,
-        grid: &Grid,
-        pieces: &GridPieces,
-        projector: &Projector,
-        lines: &GridLines,
-    ) -> Chains {
-        let mut chains = Chains::default();
-        let point = |k: usize| grid.point((self.first + k * self.step) as u32);
+    fn chains(&self, cut_lines: &CutLines, projector: &Projector, lines: &GridLines) -> Chains {
+        let CutLines { cut, pieces, left_out } = *cut_lines;
+        let point = |k: usize| cut.grid.point((self.first + k * self.step) as u32);
+        let mut chain = OpenChain { chains: Chains::default(), reaches: false, projector, lines };
         let mut q = point(0);
-        let first_edge = self.edge as u32;
-        let mut partial =
-            pieces.pieces[pieces.pieces.partition_point(|piece| piece.edge < first_edge)..].iter();
-        // Whether the chain reaches the sample where the next edge begins.
-        let mut reaches = false;
-        let border_side = |k: usize| self.border_side(grid, k, projector);
         for k in 0..self.n - 1 {
             let edge = (self.edge + k) as u32;
-            let status = pieces.status[self.edge + k];
-            let mut reached = false;
-            let mut last = (reaches && !lines.separate).then_some(0.0);
             let p = std::mem::replace(&mut q, point(k + 1));
-            let mut add = |piece: &VisiblePiece| {
-                if let Some(only) = lines.side
-                    && border_side(k).unwrap_or(piece.side) != only
-                {
-                    return;
-                }
-                let Some((t0, t1)) = projector.kept(p, q, (piece.t0, piece.t1)) else {
-                    return;
-                };
-                let at = |t: f64| match t {
-                    0.0 => projector.image(p),
-                    1.0 => projector.image(q),
-                    t => projector.image(p + t * (q - p)),
-                };
-                let span = [t0, t1].map(|t| k as f64 + t);
-                chains.extend(last == Some(t0), || at(t0), at(t1), span);
-                last = Some(t1);
-                reached = t1 == 1.0;
-            };
-            match status {
-                UPPER | LOWER => {
-                    let side =
-                        if status == UPPER { SurfaceSide::Upper } else { SurfaceSide::Lower };
-                    add(&VisiblePiece { edge, t0: 0.0, t1: 1.0, side });
-                }
-                PARTLY => {
-                    while let Some(piece) = partial.as_slice().first().filter(|p| p.edge == edge) {
-                        add(piece);
-                        partial.next();
-                    }
-                }
-                _ => {}
+            if !left_out.is_empty() && left_out.binary_search(&edge).is_ok() {
+                chain.reaches = false;
+                continue;
             }
-            reaches = reached;
+            let seen = |piece: VisiblePiece| match lines.side {
+                Some(_) => {
+                    let side = self.border_side(cut.grid, k, projector).unwrap_or(piece.side);
+                    VisiblePiece { side, ..piece }
+                }
+                None => piece,
+            };
+            let at = k as f64;
+            let Some((vertex, [first, last])) = cut.cut(edge) else {
+                chain.follow([p, q], pieces.of(edge).map(seen), [at, at + 1.0]);
+                continue;
+            };
+            let middle = cut.point(vertex);
+            chain.follow([p, middle], pieces.of(first).map(seen), [at, at + 0.5]);
+            // This one is numbered from its end on the grid.
+            let backwards = |piece: VisiblePiece| VisiblePiece {
+                t0: 1.0 - piece.t1,
+                t1: 1.0 - piece.t0,
+                ..piece
+            };
+            let of_last = pieces.of(last).rev().map(seen).map(backwards);
+            chain.follow([middle, q], of_last, [at + 0.5, at + 1.0]);
         }
-        chains
+        chain.chains
+    }
+}
+
+/// Chains along a line as far as it has been followed.
+struct OpenChain<'a> {
+    chains: Chains,
+    /// Whether the last chain reaches the point where the next edge begins.
+    reaches: bool,
+    projector: &'a Projector,
+    lines: &'a GridLines<'a>,
+}
+
+impl OpenChain<'_> {
+    /// Goes on along an edge by its visible pieces in order; `span` is where it begins and ends on the line.
+    fn follow(
+        &mut self,
+        [p, q]: [DVec3; 2],
+        pieces: impl Iterator<Item = VisiblePiece>,
+        [from, to]: [f64; 2],
+    ) {
+        let mut last = (self.reaches && !self.lines.separate).then_some(0.0);
+        self.reaches = false;
+        for piece in pieces {
+            if self.lines.side.is_some_and(|only| piece.side != only) {
+                continue;
+            }
+            let Some((t0, t1)) = self.projector.kept(p, q, (piece.t0, piece.t1)) else { continue };
+            let at = |t: f64| self.projector.between(p, q, t);
+            let span = [t0, t1].map(|t| from + t * (to - from));
+            self.chains.extend(last == Some(t0), || at(t0), at(t1), span);
+            last = Some(t1);
+            self.reaches = t1 == 1.0;
+        }
     }
 }

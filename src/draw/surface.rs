@@ -45,13 +45,14 @@ use crate::axes::is_straight_down;
 use crate::camera::framing::View;
 use crate::camera::{Camera, Projection};
 use crate::engines::edge::LineEngine;
-use crate::engines::surface::max_min;
+use crate::engines::surface::max_min::{self, OrderedGrid};
 use crate::extent::Extent;
 use crate::model::scene::Scene;
 use crate::page::{Page, PageOptions};
 use crate::strokes::{Stroke, StrokeKind, Strokes};
 use crate::surface::{
-    AxisScale, FoldView, LatticeLines, LevelCurve, LinedScene, SampledSurface, Surface,
+    AxisScale, CutGrid, FoldView, GridCuts, LatticeLines, LevelCurve, LinedScene, SampledSurface,
+    Surface,
 };
 use crate::timing::{Seconds, timed};
 
@@ -163,7 +164,12 @@ pub fn draw_surface(
     let own_page = Page::place(&surface.extent(&camera), &camera, page);
     let mm_per_image_unit = own_page.map_or(1.0, |page| page.mm_per_image_unit());
     let folds = FoldView { camera: &camera, mm_per_image_unit };
-    let lined = match grid {
+    let cuts = timed(&mut seconds.topology, || match grid {
+        Some(_) if lines.silhouette => surface.fold_cuts(&folds),
+        _ => GridCuts::NONE,
+    });
+    let grid = grid.and_then(|grid| OrderedGrid::new(CutGrid { grid, cuts: &cuts }, &camera));
+    let lined = match &grid {
         Some(_) => None,
         None => {
             let lined = || lined(&surface, lines, &levels, Some(&folds));
@@ -172,7 +178,7 @@ pub fn draw_surface(
     };
     let extent = match &lined {
         Some((lined, _)) => lined.scene.extent(&camera),
-        None => surface.extent(&camera),
+        None => surface.extent(&camera).union(Extent::new(cuts.points(), &[], &camera)),
     };
     let legend = lines.legend.as_ref();
     let legend = legend.map(|legend| LegendText::new(legend, &names, &surface, lines, &levels));
@@ -183,10 +189,11 @@ pub fn draw_surface(
     }
     notes.extend(around.notes.iter().cloned());
     let mut visible_wires = None;
-    let (mut drawn, size) = match (grid, &lined) {
+    let (mut drawn, size) = match (&grid, &lined) {
         (Some(grid), _) => {
             let wires = around.layout.wires();
-            let drawn = draw_grid(grid, surface.places(), &camera, lines, wires)?;
+            let scale = page.mm_per_image_unit();
+            let drawn = draw_grid(grid, surface.places(), &camera, lines, wires, scale)?;
             visible_wires = drawn.wires;
             (drawn.drawn, drawn.size)
         }

@@ -45,10 +45,18 @@ struct Cut {
     point: DVec3,
 }
 
+/// What became of triangles that were cut.
+pub(super) struct FoldPieces {
+    /// For each triangle the one that it is a piece of.
+    pub(super) origins: Vec<u32>,
+    /// The edges that were cut, lower ends first, and the vertices on them.
+    pub(super) cuts: Vec<([u32; 2], u32)>,
+}
+
 impl LinedMesh {
     /// Cuts triangles along the folds of the functions of the sheets, and lines where they cross folds.
     /// Sheets are cut in their order; at edges that they share the first one decides. O(triangles).
-    pub(super) fn add_folds(&mut self, folds: &[SheetFolds], view: &FoldView) {
+    pub(super) fn add_folds(&mut self, folds: &[SheetFolds], view: &FoldView) -> FoldPieces {
         let twins = self.first_twins(folds.iter().all(|of| of.function.is_in_plan()));
         let mut cuts: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         let mut sides = vec![0_i8; self.positions.len()];
@@ -60,12 +68,14 @@ impl LinedMesh {
         let ranges: Vec<Range<usize>> =
             starts.iter().zip(ends).map(|(start, end)| *start..end).collect();
         let mut triangles = Vec::with_capacity(self.triangles.len());
+        let mut origins = Vec::with_capacity(self.triangles.len());
         let mut firsts = Vec::with_capacity(ranges.len());
         let mut sided = Vec::with_capacity(self.triangles.len());
         for (k, range) in ranges.into_iter().enumerate() {
             firsts.push(triangles.len());
-            let of_sheet = &self.triangles[range];
+            let of_sheet = &self.triangles[range.clone()];
             let Some(folds) = folds.get(k) else {
+                origins.extend(range.start as u32..range.end as u32);
                 triangles.extend_from_slice(of_sheet);
                 continue;
             };
@@ -82,8 +92,9 @@ impl LinedMesh {
             let first = triangles.len();
             let has_rim = rim_from < u32::MAX;
             let sheet = u16::try_from(k + 1).unwrap_or(u16::MAX);
-            for corners in of_sheet {
+            for (corners, origin) in of_sheet.iter().zip(range.start as u32..) {
                 split(*corners, &cut, &is_front, &mut triangles);
+                origins.resize(triangles.len(), origin);
             }
             let n_before = twins.len() as u32;
             let twin =
@@ -125,6 +136,7 @@ impl LinedMesh {
             self.lines.push(SurfaceLine { ends, kind: StrokeKind::Silhouette, part });
         }
         self.has_folds = true;
+        FoldPieces { origins, cuts: cuts.into_iter().collect() }
     }
 
     /// For each vertex the first one at the same place: sheets share rims, and lattices meet at seams.

@@ -274,6 +274,39 @@ impl Grid {
         DVec3::new(self.xs[i], self.ys[j], self.zs[sample as usize])
     }
 
+    /// How many edges there are between neighboring samples.
+    ///
+    /// Edges along x come first, row by row: (i,j)–(i+1,j) is number `j·(nx−1) + i`. Then those along
+    /// y, column by column: (i,j)–(i,j+1) is number `ny·(nx−1) + i·(ny−1) + j`.
+    pub fn n_edges(&self) -> usize {
+        let (nx, ny) = (self.xs.len(), self.ys.len());
+        ny * (nx - 1) + nx * (ny - 1)
+    }
+
+    /// The samples at the ends of an edge, the lower number first.
+    pub fn ends(&self, edge: u32) -> [u32; 2] {
+        let (nx, ny, edge) = (self.xs.len(), self.ys.len(), edge as usize);
+        let along_x = ny * (nx - 1);
+        if edge < along_x {
+            let (j, i) = (edge / (nx - 1), edge % (nx - 1));
+            [j * nx + i, j * nx + i + 1].map(|k| k as u32)
+        } else {
+            let (i, j) = ((edge - along_x) / (ny - 1), (edge - along_x) % (ny - 1));
+            [j * nx + i, (j + 1) * nx + i].map(|k| k as u32)
+        }
+    }
+
+    /// The number of the edge between two samples, given the lower number first, if they are neighbors.
+    pub fn edge(&self, [low, high]: [u32; 2]) -> Option<u32> {
+        let (nx, ny) = (self.xs.len() as u32, self.ys.len() as u32);
+        let (j, i) = (low / nx, low % nx);
+        if high == low + nx {
+            Some(ny * (nx - 1) + i * (ny - 1) + j)
+        } else {
+            (high == low + 1 && i + 1 < nx).then_some(j * (nx - 1) + i)
+        }
+    }
+
     /// Lowest and highest height; `None` when all samples are holes.
     pub fn heights(&self) -> Option<(f64, f64)> {
         let Heights { low, high, .. } = self.heights;

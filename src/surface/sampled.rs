@@ -10,6 +10,8 @@ use super::fold_cuts::SheetFolds;
 use super::folds::{FoldFunction, FoldView};
 use super::formula::{Axis, Formula};
 use super::grid::{Grid, Holes, check_parameters, check_ranges, check_size};
+use super::grid_cuts::{CutGrid, GridCuts};
+use super::grid_folds::grid_folds;
 use super::height_cut::HeightCut;
 use super::height_function::HeightFunction;
 use super::lattice_extent::lattice_extent;
@@ -615,7 +617,13 @@ impl SampledSurface {
         }
         if let Some(view) = view.filter(|_| !lines.triangles) {
             let folds = self.folds(view, !levels.is_empty());
-            if !folds.is_empty() {
+            if let ([grid], [_]) = (self.grids(), &folds[..])
+                && grid.holes() == Holes::None
+                && levels.is_empty()
+            {
+                let cuts = grid_folds(grid, &folds, view);
+                mesh.cut_cells(&CutGrid { grid, cuts: &cuts });
+            } else if !folds.is_empty() {
                 mesh.add_folds(&folds, view);
             }
         }
@@ -623,6 +631,21 @@ impl SampledSurface {
             mesh.cut_off(cut);
         }
         mesh
+    }
+
+    /// Whether it is one grid whose folds are known by its formula.
+    pub(crate) fn is_grid_with_folds(&self) -> bool {
+        self.grids().len() == 1 && self.formulas.len() == 1
+    }
+
+    /// The cells along the folds of this view in smaller triangles, if this is one grid without holes;
+    /// otherwise, and where formulas are not known, none. O(samples).
+    pub(crate) fn fold_cuts(&self, view: &FoldView) -> GridCuts {
+        let folds = self.folds(view, false);
+        match (self.grids(), &folds[..]) {
+            ([grid], [_]) if grid.holes() == Holes::None => grid_folds(grid, &folds, view),
+            _ => GridCuts::NONE,
+        }
     }
 
     /// The functions of the sheets by which they fold; none where they are not known.

@@ -11,6 +11,7 @@ use crate::drafting::Drafted;
 use crate::draw::{DrawOutput, MeshSize};
 use crate::engines::edge::LineCounts;
 use crate::engines::surface::floating_horizon::Family;
+use crate::engines::surface::max_min::OrderedGrid;
 use crate::engines::surface::{SurfaceSide, floating_horizon, max_min};
 use crate::surface::{Grid, Holes, Places, SampledSurface};
 use crate::timing::{Seconds, timed};
@@ -24,13 +25,19 @@ pub(super) fn grid_to_draw<'a>(
     lines: &SurfaceLines,
     camera: &Camera,
 ) -> Result<Option<&'a Grid>, SurfaceError> {
-    let needs_mesh = lines.levels.is_some() || lines.has_mesh_lines() || !lines.has_grid_lines();
+    // A border along which both families have lines has no ink of its own.
+    let needs_mesh = lines.levels.is_some()
+        || lines.intersections
+        || lines.mesh
+        || lines.silhouette && (lines.exact || !surface.is_grid_with_folds())
+        || lines.border && !(lines.along_x && lines.along_y)
+        || !lines.has_grid_lines();
     let grid = match (surface.grids(), lines.engine) {
         ([grid], SurfaceEngine::Auto | SurfaceEngine::MaxMin) => {
             (!needs_mesh && grid.holes() == Holes::None).then_some(grid)
         }
         (grids, SurfaceEngine::FloatingHorizon) => {
-            if needs_mesh || lines.along_x == lines.along_y {
+            if needs_mesh || lines.has_mesh_lines() || lines.along_x == lines.along_y {
                 return Err(SurfaceError::OneFamily);
             }
             let [grid] = grids else { return Err(SurfaceError::OneGrid) };
@@ -57,17 +64,21 @@ pub(super) struct DrawnGrid {
     pub(super) wires: Option<Vec<Vec<[f64; 2]>>>,
 }
 
-/// Draws grid lines of `grid`; `places` says which of its lines count, if not all do.
+/// Draws grid lines of `grid`, and the lines that its cells are cut along; `places` says which of its lines
+/// count, if not all do.
 ///
 /// # Errors
 /// The engine cannot draw the grid.
 pub(super) fn draw_grid(
-    grid: &Grid,
+    ordered: &OrderedGrid,
     places: Option<&Places>,
     camera: &Camera,
     options: &SurfaceLines,
     wires: &[Wire],
+    mm_per_image_unit: f64,
 ) -> Result<DrawnGrid, SurfaceError> {
+    let cut = ordered.cut();
+    let grid = cut.grid;
     let mut seconds = Seconds::default();
     let wires: Vec<[DVec3; 2]> = wires.iter().map(|wire| wire.ends).collect();
     let (engine, (pieces, parts)) =
@@ -79,18 +90,19 @@ pub(super) fn draw_grid(
                 }
                 _ => {
                     let order = options.order.unwrap_or_default();
-                    let (pieces, parts) = max_min::solve_with_wires(grid, camera, order, &wires)?;
+                    let (pieces, parts) = max_min::solve_cut(ordered, camera, order, &wires)?;
                     (max_min::NAME, (pieces, Some(parts)))
                 }
             })
         })?;
     let drawing = timed(&mut seconds.strokes, || {
         let SurfaceLines { along_x, along_y, every, exact: separate, .. } = *options;
-        let lines = GridLines { along_x, along_y, every, places, side: None, separate };
+        let shortest = options.shortest_stroke_mm / mm_per_image_unit;
+        let lines = GridLines { along_x, along_y, every, places, side: None, separate, shortest };
         if !options.underside {
-            return strokes(grid, &pieces, camera, &lines);
+            return strokes(&cut, &pieces, camera, &lines);
         }
-        let of = |side| strokes(grid, &pieces, camera, &GridLines { side: Some(side), ..lines });
+        let of = |side| strokes(&cut, &pieces, camera, &GridLines { side: Some(side), ..lines });
         let mut drawing = of(SurfaceSide::Upper);
         drawing.append_undersides(&of(SurfaceSide::Lower));
         drawing

@@ -12,6 +12,7 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 use super::CellOrder;
+use super::ordered_grid::OrderedGrid;
 use super::segment::{Cell, Diagonal, HorizonVertex, Samples};
 use super::strip::HorizonStrip;
 use crate::surface::Grid;
@@ -85,8 +86,13 @@ impl GridPart {
     }
 
     /// Visits every cell that meets the strip and records what is visible in it.
-    pub(super) fn sweep(&self, grid: &Grid, strip: &mut HorizonStrip<Grid>, order: CellOrder) {
-        let mut walk = CellWalk { part: self, grid, strip };
+    pub(super) fn sweep(
+        &self,
+        ordered: &OrderedGrid,
+        strip: &mut HorizonStrip<OrderedGrid>,
+        order: CellOrder,
+    ) {
+        let mut walk = CellWalk { part: self, grid: ordered.grid(), ordered, strip };
         match order {
             CellOrder::Rows => walk.rows(),
             CellOrder::Diagonals => walk.diagonals(),
@@ -94,10 +100,11 @@ impl GridPart {
     }
 }
 
-struct CellWalk<'a, 'b, 'c> {
+struct CellWalk<'a, 'b, 'c, 'd> {
     part: &'a GridPart,
     grid: &'a Grid,
-    strip: &'b mut HorizonStrip<'c, Grid>,
+    ordered: &'a OrderedGrid<'a>,
+    strip: &'b mut HorizonStrip<'c, OrderedGrid<'d>>,
 }
 
 /// Vertices of neighboring columns of one row.
@@ -131,7 +138,7 @@ impl Row {
     }
 }
 
-impl CellWalk<'_, '_, '_> {
+impl CellWalk<'_, '_, '_, '_> {
     fn id(&self, c: usize, r: usize) -> u32 {
         self.part.sample(self.grid, c, r)
     }
@@ -201,8 +208,25 @@ impl CellWalk<'_, '_, '_> {
         }
     }
 
+    /// Visits the triangles of a cell; whether it is cut.
+    #[inline]
+    fn triangles(&mut self, c: usize, r: usize) -> bool {
+        let i = self.part.columns[c].min(self.part.columns[c + 1]);
+        let j = self.part.rows[r].min(self.part.rows[r + 1]);
+        let number = j * (self.grid.xs().len() as u32 - 1) + i;
+        let Some(triangles) = self.ordered.triangles(number) else { return false };
+        for triangle in triangles {
+            let vertices = triangle.corners.map(|corner| self.strip.plane.vertex(corner));
+            triangle.visit(vertices, self.strip);
+        }
+        true
+    }
+
     /// A cell wholly inside the part.
     fn cell(&mut self, c: usize, r: usize, cell: &Cell) {
+        if self.triangles(c, r) {
+            return;
+        }
         let Cell { near, right, left, far, .. } = *cell;
         let part = self.part;
         if (c == 0 && part.first_column != First::Beyond)
@@ -280,6 +304,9 @@ impl CellWalk<'_, '_, '_> {
 
     /// A cell cut by the border of the part.
     fn cut_cell(&mut self, c: usize, r: usize) {
+        if self.triangles(c, r) {
+            return;
+        }
         let (part, grid) = (self.part, self.grid);
         let [near, right, left, far] =
             [(c, r), (c + 1, r), (c, r + 1), (c + 1, r + 1)].map(|(c, r)| self.id(c, r));

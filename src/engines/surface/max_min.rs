@@ -47,6 +47,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cells::{First, GridPart};
+pub use super::ordered_grid::OrderedGrid;
 use super::pieces::{GridPieces, HIDDEN, LOWER, UPPER};
 use super::plan_predicates::{PlanSight, over_plane};
 use super::segment::HorizonPlane;
@@ -118,6 +119,20 @@ pub fn solve_with_wires(
     order: CellOrder,
     wires: &[[DVec3; 2]],
 ) -> Result<(GridPieces, WireParts), HorizonError> {
+    sweep(&OrderedGrid::uncut(grid), camera, order, CELLS_PER_STRIP, wires)
+}
+
+/// As [`solve_with_wires`], with cells in smaller triangles; edges are numbered as in
+/// [`CutGrid`](crate::surface::CutGrid). What is seen of edges that only divide cells is not found.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_cut(
+    grid: &OrderedGrid,
+    camera: &Camera,
+    order: CellOrder,
+    wires: &[[DVec3; 2]],
+) -> Result<(GridPieces, WireParts), HorizonError> {
     sweep(grid, camera, order, CELLS_PER_STRIP, wires)
 }
 
@@ -132,21 +147,22 @@ pub fn solve_in_strips(
     order: CellOrder,
     cells_per_strip: usize,
 ) -> Result<GridPieces, HorizonError> {
-    sweep(grid, camera, order, cells_per_strip, &[]).map(|(pieces, _)| pieces)
+    let grid = OrderedGrid::uncut(grid);
+    sweep(&grid, camera, order, cells_per_strip, &[]).map(|(pieces, _)| pieces)
 }
 
 fn sweep(
-    grid: &Grid,
+    ordered: &OrderedGrid,
     camera: &Camera,
     order: CellOrder,
     cells_per_strip: usize,
     wires: &[[DVec3; 2]],
 ) -> Result<(GridPieces, WireParts), HorizonError> {
+    let grid = ordered.grid();
     if grid.holes() != Holes::None {
         return Err(HorizonError::Holes);
     }
-    let (nx, ny) = (grid.xs().len(), grid.ys().len());
-    let n_edges = ny * (nx - 1) + nx * (ny - 1);
+    let (nx, ny, n_edges) = (grid.xs().len(), grid.ys().len(), ordered.n_edges());
     let forward = camera.forward();
     let perspective = matches!(camera.projection(), Projection::Perspective { .. });
     if !perspective && forward.x == 0.0 && forward.y == 0.0 {
@@ -157,7 +173,7 @@ fn sweep(
     let horizons = if perspective { horizons_at_foot(grid, camera.eye())? } else { (true, true) };
     let status: Vec<AtomicU8> = (0..n_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
 
-    let (low, high) = bounds(grid);
+    let (low, high) = ordered.bounds();
     // In orthographic projection only differences matter; a center in the middle keeps them small.
     let center = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
     let size = (high - center).abs().max((low - center).abs());
@@ -178,12 +194,13 @@ fn sweep(
         .par_iter()
         .with_max_len(1)
         .map(|&(part, sight, range)| {
-            let plane = HorizonPlane::new(grid, sight, size);
+            let plane = HorizonPlane::new(ordered, sight, size);
             let mut strip = HorizonStrip::new(plane, range, horizons, &status);
-            part.sweep(grid, &mut strip, order);
+            part.sweep(ordered, &mut strip, order);
             let (work, found) = (strip.work(), std::mem::take(&mut strip.found));
             let horizons = strip.into_horizons();
-            let parts = visible_in_strip((grid, wires), sight, size_with_wires, range, &horizons);
+            let parts =
+                visible_in_strip((ordered, wires), sight, size_with_wires, range, &horizons);
             ((work, found), parts)
         })
         .collect();

@@ -33,8 +33,8 @@ pub(crate) const PARTLY: u8 = 3;
 
 /// Visible parts of all edges of a grid.
 ///
-/// Edges along x come first, row by row: (i,j)–(i+1,j) is number `j·(nx−1) + i`. Then those along
-/// y, column by column: (i,j)–(i,j+1) is number `ny·(nx−1) + i·(ny−1) + j`.
+/// Edges are numbered as in [`Grid::n_edges`](crate::surface::Grid::n_edges), and as in
+/// [`CutGrid`](crate::surface::CutGrid) where cells are cut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridPieces {
     pub(super) nx: usize,
@@ -61,41 +61,28 @@ impl GridPieces {
         self.work
     }
 
-    /// Samples at the ends of an edge.
-    pub fn ends(&self, edge: u32) -> [u32; 2] {
-        let (nx, ny, edge) = (self.nx, self.ny, edge as usize);
-        let along_x = ny * (nx - 1);
-        if edge < along_x {
-            let (j, i) = (edge / (nx - 1), edge % (nx - 1));
-            [j * nx + i, j * nx + i + 1].map(|k| k as u32)
+    /// The visible pieces of an edge in order of t. O(log pieces).
+    pub fn of(&self, edge: u32) -> impl DoubleEndedIterator<Item = VisiblePiece> {
+        let status = self.status[edge as usize];
+        let whole = match status {
+            UPPER => Some(SurfaceSide::Upper),
+            LOWER => Some(SurfaceSide::Lower),
+            _ => None,
+        };
+        let parts = if status == PARTLY {
+            let first = self.pieces.partition_point(|piece| piece.edge < edge);
+            let n = self.pieces[first..].partition_point(|piece| piece.edge == edge);
+            &self.pieces[first..first + n]
         } else {
-            let (i, j) = ((edge - along_x) / (ny - 1), (edge - along_x) % (ny - 1));
-            [j * nx + i, (j + 1) * nx + i].map(|k| k as u32)
-        }
+            &[]
+        };
+        let whole = whole.map(|side| VisiblePiece { edge, t0: 0.0, t1: 1.0, side });
+        whole.into_iter().chain(parts.iter().copied())
     }
 
     /// All visible pieces in order of edge and t.
     pub fn iter(&self) -> impl Iterator<Item = VisiblePiece> {
-        let mut partial = self.pieces.iter().peekable();
-        self.status.iter().enumerate().flat_map(move |(edge, status)| {
-            let edge = edge as u32;
-            let mut found = Vec::new();
-            match *status {
-                UPPER => {
-                    found.push(VisiblePiece { edge, t0: 0.0, t1: 1.0, side: SurfaceSide::Upper })
-                }
-                LOWER => {
-                    found.push(VisiblePiece { edge, t0: 0.0, t1: 1.0, side: SurfaceSide::Lower })
-                }
-                PARTLY => {
-                    while let Some(piece) = partial.next_if(|piece| piece.edge == edge) {
-                        found.push(*piece);
-                    }
-                }
-                _ => {}
-            }
-            found
-        })
+        (0..self.status.len() as u32).flat_map(|edge| self.of(edge))
     }
 
     /// Combines the pieces and counts of strips.

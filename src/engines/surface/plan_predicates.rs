@@ -56,6 +56,15 @@ impl PlanSight {
         }
     }
 
+    /// Whether a point lies beyond the part's borders x and y.
+    pub(super) fn is_outside(&self, p: DVec3) -> (bool, bool) {
+        let Self { center, sx, sy, forward } = *self;
+        if forward.is_some() {
+            return (false, false);
+        }
+        (p.x * sx < center.x * sx, p.y * sy < center.y * sy)
+    }
+
     /// `h` of a point, rounded.
     pub(super) fn rounded(&self, p: DVec3) -> [f64; 3] {
         let d = p - self.center;

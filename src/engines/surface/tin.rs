@@ -39,13 +39,14 @@ use super::HorizonCounts;
 use super::max_min::strips;
 use super::pieces::{GridPieces, HIDDEN, LOWER, PARTLY, UPPER};
 use super::plan_predicates::{PlanSight, over_plane};
+use super::plan_triangle::{Facing, PlanTriangle, Side, facing, signs};
 use super::segment::{HorizonPlane, HorizonVertex, Samples};
 use super::strip::HorizonStrip;
 use crate::camera::{Camera, Projection};
 use crate::classify::ViewedScene;
 use crate::engines::visibility::{Span, Visibility};
 use crate::model::scene::Scene;
-use crate::predicates::{Sign, orient2d};
+use crate::predicates::Sign;
 
 mod sheets;
 
@@ -105,17 +106,6 @@ fn is_clear_of_near_plane(view: &ViewedScene) -> bool {
     view.scene().triangles().par_iter().all(is_clear)
 }
 
-/// Where the eye is relative to a side of a triangle, in plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Facing {
-    /// Beyond it: the triangle is behind this side.
-    Near,
-    /// On the triangle's side of it.
-    Far,
-    /// On its line.
-    Radial,
-}
-
 /// A triangulated surface as one camera sees it.
 struct Tin<'a> {
     scene: &'a Scene,
@@ -147,22 +137,7 @@ impl<'a> Tin<'a> {
         let positions = scene.mesh().positions();
         let (sx, sy) = signs(camera);
         let sight = PlanSight::new(camera, sx, sy, center);
-        let eye = camera.eye().truncate();
-        let facing = |a: u32, b: u32| {
-            let [a, b] = [a, b].map(|v| positions[v as usize]);
-            // Triangles are to the left of their sides.
-            let left = if is_perspective {
-                orient2d(a.truncate(), b.truncate(), eye)
-            } else {
-                let order = Sign::from(sight.order(a, b));
-                if sx * sy > 0.0 { order } else { order.flipped() }
-            };
-            match left {
-                Sign::Positive => Facing::Far,
-                Sign::Zero => Facing::Radial,
-                Sign::Negative => Facing::Near,
-            }
-        };
+        let facing = |a: u32, b: u32| facing(&sight, [a, b].map(|v| positions[v as usize]));
         let topology = scene.topology();
         let sides: Vec<[(u32, Facing); 3]> = scene
             .triangles()
@@ -248,12 +223,6 @@ fn outwards(scene: &Scene, sides: &[[(u32, Facing); 3]]) -> Option<Vec<u32>> {
     (order.len() == sides.len()).then_some(order)
 }
 
-/// The signs that reflect the only part of an orthographic view.
-fn signs(camera: &Camera) -> (f64, f64) {
-    let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
-    (sign(camera.forward().x), sign(camera.forward().y))
-}
-
 /// A part of the domain with its vertices in the plane of horizons.
 struct TinPart {
     sight: PlanSight,
@@ -319,19 +288,10 @@ fn sweep(tin: &Tin, sheets: &Sheets, triangles_per_strip: usize) -> Option<GridP
 }
 
 impl TinPart {
-    /// Whether a point lies beyond the part's borders x and y.
-    fn is_outside(&self, p: DVec3) -> (bool, bool) {
-        let PlanSight { center, sx, sy, forward } = self.sight;
-        if forward.is_some() {
-            return (false, false);
-        }
-        (p.x * sx < center.x * sx, p.y * sy < center.y * sy)
-    }
-
     /// The range of u that a triangle is within; `None` when it has nothing in the part.
     fn range(&self, tin: &Tin, triangle: u32) -> Option<(f64, f64)> {
         let corners = tin.scene.triangles()[triangle as usize];
-        let outside = corners.map(|v| self.is_outside(tin.point(v)));
+        let outside = corners.map(|v| self.sight.is_outside(tin.point(v)));
         if outside.iter().all(|o| o.0) || outside.iter().all(|o| o.1) {
             return None;
         }
@@ -353,95 +313,14 @@ impl TinPart {
 
     /// Tests what a triangle adds and lets it hide.
     fn visit(&self, tin: &Tin, triangle: u32, strip: &mut HorizonStrip<Tin>) {
-        let corners @ [a, b, c] = tin.scene.triangles()[triangle as usize];
-        let sides = tin.sides[triangle as usize];
-        let ends = [(a, b), (b, c), (c, a)];
-        for (k, ((a, b), (edge, facing))) in ends.into_iter().zip(sides).enumerate() {
-            if facing == Facing::Radial {
-                self.radial(tin, (a, b), edge, corners[(k + 2) % 3], strip);
-            }
-        }
-        let is_inside = corners.iter().all(|&v| self.is_outside(tin.point(v)) == (false, false));
+        let corners = tin.scene.triangles()[triangle as usize];
+        let sides = tin.sides[triangle as usize].map(|(edge, facing)| Side {
+            edge: Some(edge),
+            facing,
+            is_border: tin.is_border(edge),
+        });
         let vertices = corners.map(|v| self.vertices[v as usize]);
-        if is_inside {
-            let us = vertices.map(|vertex| vertex.u);
-            let range = (us[0].min(us[1]).min(us[2]), us[0].max(us[1]).max(us[2]));
-            if !strip.visit(vertices, range) {
-                strip.leave();
-                return;
-            }
-        }
-        let mut draw = |wanted: Facing| {
-            for ((a, b), (edge, facing)) in ends.into_iter().zip(sides) {
-                let is_first = facing == Facing::Far || tin.is_border(edge);
-                if facing == wanted && is_first {
-                    self.draw(tin, (a, b), edge, strip);
-                }
-            }
-        };
-        draw(Facing::Near);
-        draw(Facing::Far);
-        strip.leave();
-    }
-
-    fn draw(&self, tin: &Tin, (a, b): (u32, u32), edge: u32, strip: &mut HorizonStrip<Tin>) {
-        let is_inside = [a, b].iter().all(|&v| self.is_outside(tin.point(v)) == (false, false));
-        if !is_inside {
-            strip.draw_clipped(a, b, edge);
-            return;
-        }
-        let [a, b] = [a, b].map(|v| self.vertices[v as usize]);
-        let segment = match strip.plane.order(a, b) {
-            Ordering::Less => strip.segment(a, b),
-            Ordering::Equal => None,
-            Ordering::Greater => strip.segment(b, a),
-        };
-        if let Some(segment) = segment {
-            strip.draw(&segment, edge);
-        }
-    }
-
-    /// Tests an edge in the vertical plane of the eye, beside the triangle with the given apex. On
-    /// the border of the domain nothing is beside it on the outer side, so it is wholly visible.
-    fn radial(
-        &self,
-        tin: &Tin,
-        (a, b): (u32, u32),
-        edge: u32,
-        apex: u32,
-        strip: &mut HorizonStrip<Tin>,
-    ) {
-        if tin.is_border(edge) {
-            strip.draw_whole(edge);
-            return;
-        }
-        let PlanSight { center, sx, sy, forward } = self.sight;
-        let place = |v: u32| {
-            let p = tin.point(v);
-            (p.x * sx, p.y * sy)
-        };
-        let (near, far) = if place(a) < place(b) { (a, b) } else { (b, a) };
-        let foot = (center.x * sx, center.y * sy);
-        let (from, to) = (place(near), place(far));
-        let mut t_foot = None;
-        if forward.is_none() {
-            if to == foot || self.is_outside(tin.point(far)) != (false, false) {
-                return;
-            }
-            if self.is_outside(tin.point(near)) != (false, false) {
-                let along = |from: f64, to: f64, foot: f64| (foot - from) / (to - from);
-                let is_steep = (to.1 - from.1).abs() > (to.0 - from.0).abs();
-                t_foot = Some(if is_steep {
-                    along(from.1, to.1, foot.1)
-                } else {
-                    along(from.0, to.0, foot.0)
-                });
-            }
-        }
-        let [near_at, far_at, apex_at] = [near, far, apex].map(|v| tin.point(v).truncate());
-        // u grows clockwise around the eye, the other way where one axis is reflected.
-        let is_right = (orient2d(near_at, far_at, apex_at) == Sign::Negative) == (sx * sy > 0.0);
-        strip.draw_radial((near, far), edge, is_right, t_foot);
+        PlanTriangle { corners, sides }.visit(vertices, strip);
     }
 }
 

@@ -16,22 +16,23 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use glam::DVec3;
 
 use super::horizon::Horizon;
+use super::ordered_grid::OrderedGrid;
 use super::pieces::HIDDEN;
 use super::plan_predicates::PlanSight;
 use super::segment::{HorizonPlane, Samples};
 use super::strip::HorizonStrip;
 use crate::surface::Grid;
 
-/// The samples of a grid, and then the ends of wires, two for each.
+/// The vertices of a grid, and then the ends of wires, two for each.
 struct WithWires<'a> {
-    grid: &'a Grid,
-    n_samples: u32,
+    grid: &'a OrderedGrid<'a>,
+    n_vertices: u32,
     wires: &'a [[DVec3; 2]],
 }
 
 impl Samples for WithWires<'_> {
     fn point(&self, sample: u32) -> DVec3 {
-        match sample.checked_sub(self.n_samples) {
+        match sample.checked_sub(self.n_vertices) {
             None => self.grid.point(sample),
             Some(end) => self.wires[end as usize / 2][end as usize % 2],
         }
@@ -44,21 +45,21 @@ pub(super) type WirePart = (u32, [f64; 2]);
 /// The parts of wires that are visible in a strip of a part of the domain, after its last cell.
 /// `size` bounds |x|, |y| and |z| of samples and wires minus the sight's center.
 pub(super) fn visible_in_strip(
-    (grid, wires): (&Grid, &[[DVec3; 2]]),
+    (grid, wires): (&OrderedGrid, &[[DVec3; 2]]),
     sight: PlanSight,
     size: DVec3,
     range: (f64, f64),
     horizons: &[Option<Horizon>; 2],
 ) -> Vec<WirePart> {
-    let n_samples = grid.zs().len() as u32;
-    let samples = WithWires { grid, n_samples, wires };
+    let n_vertices = grid.n_vertices() as u32;
+    let samples = WithWires { grid, n_vertices, wires };
     let mut parts = Vec::new();
     for wire in 0..wires.len() as u32 {
-        let [a, b] = [0, 1].map(|end| n_samples + 2 * wire + end);
+        let [a, b] = [0, 1].map(|end| n_vertices + 2 * wire + end);
         let status = [AtomicU8::new(HIDDEN)];
         let plane = HorizonPlane::new(&samples, sight, size);
         let order = sight.order(plane.point(a), plane.point(b));
-        if is_beside(grid, &sight, wires[wire as usize]) {
+        if is_beside(grid.grid(), &sight, wires[wire as usize]) {
             parts.push((wire, [0.0, 1.0]));
             continue;
         }

@@ -34,7 +34,7 @@ fn drawn(surface: &Surface, view: &View, lines: SurfaceLines) -> SurfaceOutput {
 }
 
 /// The points of strokes of a kind in millimeters, a tenth of a millimeter apart.
-fn points(drawn: &SurfaceOutput, kind: StrokeKind) -> Vec<DVec2> {
+pub(super) fn points(drawn: &SurfaceOutput, kind: StrokeKind) -> Vec<DVec2> {
     let scale = drawn.page.mm_per_image_unit();
     let mut points = Vec::new();
     for stroke in drawn.drawn.drawing.iter().filter(|stroke| stroke.kind == kind) {
@@ -52,7 +52,7 @@ fn dense(line: &[DVec2], out: &mut Vec<DVec2>) {
 }
 
 /// The distances of points from the nearest of the others, in rising order.
-fn distances(points: &[DVec2], others: &[DVec2]) -> Vec<f64> {
+pub(super) fn distances(points: &[DVec2], others: &[DVec2]) -> Vec<f64> {
     const CELL: f64 = 2.0;
     let cell = |p: DVec2| (p / CELL).floor().to_array().map(|x| x as i32);
     let mut cells = std::collections::HashMap::<_, Vec<DVec2>>::new();

@@ -76,7 +76,7 @@ fn ridges_of_nearly_one_height_are_told_apart() {
         for order in [CellOrder::Rows, CellOrder::Diagonals] {
             let pieces = max_min::solve(&grid, &camera, order).unwrap();
             for (edge, found) in intervals(&pieces).iter().enumerate() {
-                let ends @ [a, b] = pieces.ends(edge as u32);
+                let ends @ [a, b] = grid.ends(edge as u32);
                 let row = a as usize / COLUMNS;
                 if row < FIRST_RIDGE || !is_ridge(row) || row != b as usize / COLUMNS {
                     continue;

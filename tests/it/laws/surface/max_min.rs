@@ -105,7 +105,7 @@ fn check(grid: &Grid, camera: &Camera, name: &str) -> bool {
             assert!(
                 difference < 1e-9,
                 "{name}, {order}: edge {edge} {:?} of {grid:?}\nfrom {camera:?}\nis visible at {expected:?}, not {got:?}",
-                pieces.ends(edge as u32).map(|k| grid.point(k))
+                grid.ends(edge as u32).map(|k| grid.point(k))
             );
         }
     }
@@ -156,7 +156,7 @@ fn a_tall_spike_off_the_axis_hides_no_more_than_it_covers() {
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
     let lines = intervals(&pieces);
     // Sample (2,1), at which the edges from (1,1) and from (2,0) end.
-    let edges: Vec<usize> = (0..lines.len()).filter(|&e| pieces.ends(e as u32)[1] == 5).collect();
+    let edges: Vec<usize> = (0..lines.len()).filter(|&e| grid.ends(e as u32)[1] == 5).collect();
     assert_eq!(edges.len(), 2);
     for edge in edges {
         assert!(lines[edge].last().is_some_and(|range| range.1 == 1.0), "{:?}", lines[edge]);
@@ -205,7 +205,7 @@ fn sides_of_a_paraboloid_change_at_its_closed_form_contour() {
     let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
     let mut seen = [0, 0];
     for piece in pieces.iter() {
-        let [a, b] = pieces.ends(piece.edge).map(|k| grid.point(k));
+        let [a, b] = grid.ends(piece.edge).map(|k| grid.point(k));
         let middle = a + (piece.t0 + piece.t1) / 2.0 * (b - a);
         let distance = (middle.truncate() - eye.truncate()).length() - radius;
         // The outer side is seen from below and before the contour, the inner one beyond it.
@@ -349,7 +349,7 @@ fn planes_seen_nearly_along_themselves_equal_exact_engines() {
         let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("pieces");
         let expected = visible_by_mesh(&grid, &camera);
         for (edge, found) in (0..).zip(visible_parts(&pieces)) {
-            let expected = expected[&pieces.ends(edge)];
+            let expected = expected[&grid.ends(edge)];
             assert!((found - expected).abs() < 1e-6, "round {round}, {edge}: {found}, {expected}");
             n_hidden += usize::from(expected < 0.5);
             n_visible += usize::from(expected > 0.5);

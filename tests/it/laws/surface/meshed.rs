@@ -83,7 +83,7 @@ fn a_mesh_engine_draws_what_max_min_draws() {
         }
         let by_mesh = solved(&surface, &camera);
         for (edge, ranges) in intervals(&pieces).iter().enumerate() {
-            let ends = pieces.ends(edge as u32).map(|k| grid.point(k));
+            let ends = grid.ends(edge as u32).map(|k| grid.point(k));
             let (name, expected) = named(ends, ranges);
             // Edges seen end-on are no part of a drawing.
             let Some(got) = by_mesh.get(&name) else { continue };

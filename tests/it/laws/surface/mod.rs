@@ -6,6 +6,7 @@ mod damage;
 mod drawing;
 mod floating_horizon;
 mod folds;
+mod grid_folds;
 mod height_files;
 mod height_range;
 mod heights;

@@ -3,8 +3,8 @@
 use glam::{DVec3, dvec3};
 use hiddenline::stages::chain::grid_lines::{GridLines, strokes};
 use hiddenline::stages::engines::surface::{CellOrder, max_min};
-use hiddenline::stages::surface::Grid;
 use hiddenline::stages::surface::formula::{Formula, Variables};
+use hiddenline::stages::surface::{CutGrid, Grid, GridCuts};
 
 use super::max_min::{PERSPECTIVE, camera};
 
@@ -20,7 +20,12 @@ fn the_pen_is_up_for_less_than_half_of_what_it_draws() {
         for eye in [dvec3(20.0, -30.0, 25.0), dvec3(20.0, -30.0, 6.0), dvec3(1.0, -25.0, 4.0)] {
             let camera = camera(eye, DVec3::ZERO, PERSPECTIVE);
             let pieces = max_min::solve(&grid, &camera, CellOrder::Rows).expect("a drawing");
-            let drawing = strokes(&grid, &pieces, &camera, &GridLines::default());
+            let drawing = strokes(
+                &CutGrid { grid: &grid, cuts: &GridCuts::NONE },
+                &pieces,
+                &camera,
+                &GridLines::default(),
+            );
             let (mut up, mut down, mut pen) = (0.0, 0.0, None);
             for stroke in drawing.iter() {
                 up += pen.map_or(0.0, |pen: glam::DVec2| pen.distance(stroke.points[0]));
