@@ -135,7 +135,7 @@ pub fn strokes(cut: &CutGrid, pieces: &GridPieces, camera: &Camera, lines: &Grid
         apart_by_kind: false,
         shortest: lines.shortest,
     };
-    drawing.append(&join(&pieces_of_lines(cut, pieces, &projector, lines.side), &options, false));
+    drawing.append(&join(&pieces_of_lines(cut, pieces, &projector, lines), &options, false));
     drawing
 }
 
@@ -144,21 +144,30 @@ fn pieces_of_lines(
     cut: &CutGrid,
     pieces: &GridPieces,
     projector: &Projector,
-    side: Option<SurfaceSide>,
+    lines: &GridLines,
 ) -> Vec<Piece> {
     let mut found = Vec::new();
     for &ends in cut.cuts.lines() {
         let Some(edge) = cut.edge(ends) else { continue };
         let [p, q] = ends.map(|end| cut.point(end));
-        for piece in pieces.of(edge).filter(|piece| side.is_none_or(|side| piece.side == side)) {
-            let Some((t0, t1)) = projector.kept(p, q, (piece.t0, piece.t1)) else { continue };
+        let is_wanted = |piece: &VisiblePiece| lines.side.is_none_or(|side| piece.side == side);
+        let of_edge = pieces.of(edge).filter(is_wanted);
+        let mut parts: Vec<(f64, f64)> =
+            of_edge.filter_map(|piece| projector.kept(p, q, (piece.t0, piece.t1))).collect();
+        let at = |t: f64| projector.between(p, q, t);
+        parts.dedup_by(|next, last| {
+            let is_short = !lines.separate && at(last.1).distance(at(next.0)) < lines.shortest;
+            last.1 = if is_short { next.1 } else { last.1 };
+            is_short
+        });
+        for (t0, t1) in parts {
             found.push(Piece {
                 kind: StrokeKind::Silhouette,
                 part: SurfacePart { sheet: 1, ..SurfacePart::default() },
                 qi: 0,
                 outline: false,
                 only_outline: false,
-                points: [t0, t1].map(|t| projector.between(p, q, t)),
+                points: [at(t0), at(t1)],
                 depths: [0.0; 2],
                 ends: [
                     if t0 == 0.0 { ends[0] } else { FREE },

@@ -165,7 +165,7 @@ pub fn draw_surface(
     let mm_per_image_unit = own_page.map_or(1.0, |page| page.mm_per_image_unit());
     let folds = FoldView { camera: &camera, mm_per_image_unit };
     let cuts = timed(&mut seconds.topology, || match grid {
-        Some(_) if lines.silhouette => surface.fold_cuts(&folds),
+        Some(_) if lines.has_folds(&surface) => surface.fold_cuts(&folds),
         _ => GridCuts::NONE,
     });
     let grid = grid.and_then(|grid| OrderedGrid::new(CutGrid { grid, cuts: &cuts }, &camera));
@@ -199,7 +199,7 @@ pub fn draw_surface(
         }
         (None, Some((lined, _))) => {
             let scale = page.mm_per_image_unit();
-            let drawn = meshed::draw(lined, &camera, &meshed_options(lines), scale);
+            let drawn = meshed::draw(lined, &camera, &meshed_options(lines, &surface), scale);
             if lines.engine == SurfaceEngine::MaxMin && drawn.engine != max_min::NAME {
                 return Err(SurfaceError::MaxMin);
             }
@@ -361,7 +361,7 @@ fn lined(
     let heights = levels.heights();
     let split_at = if lines.exact { &[] } else { &heights[..] };
     let mut mesh =
-        surface.lined(&chosen, split_at, view.filter(|_| lines.silhouette && !lines.exact));
+        surface.lined(&chosen, split_at, view.filter(|_| lines.has_folds(surface) && !lines.exact));
     if mesh.n_triangles() == 0 {
         return Err(SurfaceError::NoCells);
     }
@@ -430,7 +430,12 @@ impl TurningSurface {
         page: &PageOptions,
     ) -> Result<(TurningLines, Camera, Page), SurfaceError> {
         let camera = view.camera(self.sampled.box_bounds())?;
-        let mut visible = surface_turning_lines(&self.lined, &camera, &meshed_options(lines));
+        // Folds of the triangles zigzag; those of formulas would have to be found for each view.
+        let options = meshed::MeshedOptions {
+            folds: lines.silhouette,
+            ..meshed_options(lines, &self.sampled)
+        };
+        let mut visible = surface_turning_lines(&self.lined, &camera, &options);
         let scene = &self.lined.scene;
         let extent = scene.extent(&camera);
         let wanted = Surroundings { axes: lines.axes.as_ref(), legend: self.legend.as_ref() };
@@ -442,7 +447,7 @@ impl TurningSurface {
     }
 }
 
-fn meshed_options(lines: &SurfaceLines) -> meshed::MeshedOptions {
+fn meshed_options(lines: &SurfaceLines, surface: &SampledSurface) -> meshed::MeshedOptions {
     meshed::MeshedOptions {
         engine: match lines.engine {
             SurfaceEngine::Roberts => LineEngine::Roberts,
@@ -451,9 +456,9 @@ fn meshed_options(lines: &SurfaceLines) -> meshed::MeshedOptions {
                 LineEngine::Auto
             }
         },
-        folds: lines.silhouette,
+        folds: lines.has_folds(surface),
         intersections: lines.intersections,
-        border: lines.border,
+        border: lines.has_border(surface),
         exact: lines.exact,
         underside: lines.underside,
         // What is done to some level curves must not be done to the lines that they go on into.

@@ -633,9 +633,9 @@ impl SampledSurface {
         mesh
     }
 
-    /// Whether it is one grid whose folds are known by its formula.
-    pub(crate) fn is_grid_with_folds(&self) -> bool {
-        self.grids().len() == 1 && self.formulas.len() == 1
+    /// Whether its folds are known by formulas.
+    pub(crate) fn has_fold_functions(&self) -> bool {
+        !self.formulas.is_empty() || self.in_space.is_some()
     }
 
     /// The cells along the folds of this view in smaller triangles, if this is one grid without holes;

@@ -84,11 +84,12 @@ struct ExprArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Lines")]
 struct LineArgs {
-    /// Lines to draw, with commas between them [default: both, but mesh with --points]
+    /// Lines to draw, with commas between them [default: x,y,silhouette,border, but mesh with --points]
     ///
-    /// x: grid lines along x (or u); y: along y (or v); both; levels: curves of equal height;
-    /// silhouette: where the surface folds away from the eye; border: its edges; intersection: where
-    /// sheets cross; mesh: all edges of its triangles.
+    /// x: grid lines along x (or u); y: along y (or v); both: x,y; levels: curves of equal height;
+    /// silhouette: where the surface folds away from the eye; border: its edges where no grid line runs;
+    /// intersection: where sheets cross; mesh: all edges of its triangles. The default draws the folds
+    /// of formulas only, and with --exact only grid lines.
     #[arg(long, value_enum, value_delimiter = ',')]
     lines: Vec<LineName>,
     /// Level curves: how many, evenly spaced between the lowest and the highest point; their heights with
@@ -221,7 +222,8 @@ impl SurfaceArgs {
             SurfaceSource::Points(_) => LineName::Mesh,
             _ => LineName::Both,
         };
-        let named = if lines.lines.is_empty() { vec![default_line] } else { lines.lines };
+        let edges = lines.lines.is_empty();
+        let named = if edges { vec![default_line] } else { lines.lines };
         let has = |name| named.contains(&name);
         let both = has(LineName::Both);
         let along_x = both || has(LineName::X);
@@ -321,6 +323,7 @@ impl SurfaceArgs {
             label_height_mm: DEFAULT_LABEL_HEIGHT_MM.max(6.0 * page.pen_width_mm()),
             silhouette: has(LineName::Silhouette),
             border: has(LineName::Border),
+            edges,
             intersections: has(LineName::Intersection),
             mesh: has(LineName::Mesh),
             smoothness_mm: if lines.exact { 0.0 } else { lines.smoothness },

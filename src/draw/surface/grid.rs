@@ -29,7 +29,7 @@ pub(super) fn grid_to_draw<'a>(
     let needs_mesh = lines.levels.is_some()
         || lines.intersections
         || lines.mesh
-        || lines.silhouette && (lines.exact || !surface.is_grid_with_folds())
+        || lines.silhouette && (lines.exact || !surface.has_fold_functions())
         || lines.border && !(lines.along_x && lines.along_y)
         || !lines.has_grid_lines();
     let grid = match (surface.grids(), lines.engine) {

@@ -4,6 +4,7 @@ use crate::axes::{Axes, LegendPlace};
 use crate::draw::DEFAULT_SHORTEST_STROKE_MM;
 use crate::engines::surface::CellOrder;
 use crate::page::{DEFAULT_PEN_WIDTH_MM, PenRule};
+use crate::surface::SampledSurface;
 
 /// How far lines may deviate from the true curves, in millimeters on paper, unless set otherwise.
 pub const DEFAULT_SMOOTHNESS_MM: f64 = 0.1;
@@ -40,6 +41,9 @@ pub struct SurfaceLines {
     pub silhouette: bool,
     /// The border.
     pub border: bool,
+    /// What closes grid lines of both families: the folds of formulas, and the border where no grid line
+    /// runs along it. Not if all is drawn exactly as sampled.
+    pub edges: bool,
     /// Lines in which sheets cross.
     pub intersections: bool,
     /// All edges of all triangles.
@@ -70,7 +74,7 @@ pub struct SurfaceLines {
 }
 
 impl Default for SurfaceLines {
-    /// All grid lines, with axes.
+    /// All grid lines, with folds, border and axes.
     fn default() -> Self {
         Self {
             along_x: true,
@@ -85,6 +89,7 @@ impl Default for SurfaceLines {
             label_height_mm: DEFAULT_LABEL_HEIGHT_MM,
             silhouette: false,
             border: false,
+            edges: true,
             intersections: false,
             mesh: false,
             smoothness_mm: DEFAULT_SMOOTHNESS_MM,
@@ -168,6 +173,12 @@ impl SurfaceLines {
         Self { border: true, ..self }
     }
 
+    /// Nothing but the lines asked for: no folds and no border that close grid lines.
+    #[must_use]
+    pub fn without_edges(self) -> Self {
+        Self { edges: false, ..self }
+    }
+
     /// Lines in which sheets cross.
     #[must_use]
     pub fn intersections(self) -> Self {
@@ -222,6 +233,22 @@ impl SurfaceLines {
     /// Whether any grid lines are drawn.
     pub(super) fn has_grid_lines(&self) -> bool {
         self.along_x || self.along_y
+    }
+
+    /// Whether grid lines of the surface are closed by folds and border.
+    fn closes(&self, surface: &SampledSurface) -> bool {
+        let has_both = self.along_x && self.along_y && !surface.lattices().is_empty();
+        self.edges && has_both && !self.exact
+    }
+
+    /// Whether folds of the surface are drawn.
+    pub(super) fn has_folds(&self, surface: &SampledSurface) -> bool {
+        self.silhouette || self.closes(surface) && surface.has_fold_functions()
+    }
+
+    /// Whether the border of the surface is drawn.
+    pub(super) fn has_border(&self, surface: &SampledSurface) -> bool {
+        self.border || self.closes(surface)
     }
 
     /// Whether any lines are drawn that are not grid lines, apart from level curves.

@@ -28,8 +28,10 @@ fn drawn(surface: &Surface, view: NamedView, lines: &SurfaceLines) -> SurfaceOut
 }
 
 fn refused(surface: &Surface, lines: &SurfaceLines) -> SurfaceError {
-    let drawing = draw_surface(surface, &View::default(), lines, &PageOptions::default());
-    drawing.expect_err("an error")
+    match draw_surface(surface, &View::default(), lines, &PageOptions::default()) {
+        Err(error) => error,
+        Ok(drawn) => panic!("drawn by {}", drawn.drawn.engine),
+    }
 }
 
 /// The length of all strokes of a kind, in units of the image.
@@ -237,7 +239,7 @@ fn what_cannot_be_drawn_is_refused_for_its_own_reason() {
         ),
         (
             &of("x").samples(4001, 4001),
-            SurfaceLines { border: true, ..bare() },
+            SurfaceLines { mesh: true, ..bare() },
             SurfaceError::TooManyTriangles(32_000_000),
         ),
         (&of("x == 0 ? 1 : 0/0").samples(3, 3), bare(), SurfaceError::NoCells),
