@@ -370,15 +370,14 @@ impl Layouter<'_> {
                 edges()
                     .filter(|e| is_base(e) && is_outline(e))
                     .for_each(|e| solid(&mut layout.lines, StrokeKind::Box, &e));
-                let is_hidden = |e: &super::bounding_box::BoxEdge| {
-                    is_base(e) && walls::is_between_walls(bbox, e)
-                };
+                let is_hidden =
+                    |e: &super::bounding_box::BoxEdge| is_base(e) && walls::is_behind(bbox, e);
                 layout.wires = walls::edges(bbox, StrokeKind::Box, is_hidden);
                 layout.wires.extend(self.base_ticks(chosen, is_high));
             }
             AxesStyle::Back | AxesStyle::Box => {
                 layout.wires = walls::grid(bbox, chosen, &self.around.scales);
-                let is_behind = |e: &_| walls::is_between_walls(bbox, e);
+                let is_behind = |e: &_| walls::is_behind(bbox, e);
                 layout.wires.extend(walls::edges(bbox, StrokeKind::Back, is_behind));
                 let is_box = self.style == AxesStyle::Box;
                 for edge in edges().filter(is_outline) {

@@ -32,12 +32,20 @@ fn way(azimuth: f64, elevation: f64) -> DVec3 {
 
 /// The axes of a box that is as wide as 160 mm of paper.
 fn layout(around: &AxesBox, camera: &Camera, axes: &Axes, economy: Economy) -> Option<AxesLayout> {
-    let first = AxesSize { text_mm: 3.5, mm_per_unit: 1.0, economy };
+    layout_on((160.0, 3.5), around, camera, axes, economy)
+}
+
+/// The axes of a box whose image is so many millimeters wide, with numbers of some height.
+fn layout_on(
+    (width_mm, text_mm): (f64, f64),
+    around: &AxesBox,
+    camera: &Camera,
+    axes: &Axes,
+    economy: Economy,
+) -> Option<AxesLayout> {
+    let first = AxesSize { text_mm, mm_per_unit: 1.0, economy };
     let image = AxesLayout::new(around, camera, axes, &first)?;
-    let xs = image.box_in_image().iter().map(|p| p.x);
-    let (low, high) =
-        xs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    let size = AxesSize { mm_per_unit: 160.0 / (high - low), ..first };
+    let size = AxesSize { mm_per_unit: width_mm / width(&image), ..first };
     AxesLayout::new(around, camera, axes, &size)
 }
 
@@ -96,6 +104,119 @@ fn width(layout: &AxesLayout) -> f64 {
     let (low, high) =
         xs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     high - low
+}
+
+#[test]
+fn ticks_are_not_too_slanted_and_keep_apart_on_any_paper() {
+    let (mut n_slanted, mut n_minors, mut n_numbers) = (0, 0, 0);
+    let sizes = [[10.0, 9.0, 4.0], [10.0, 2.0, 1.0], [3.0, 10.0, 0.5]].map(DVec3::from_array);
+    let papers = [(160.0, 3.5), (60.0, 3.5), (60.0, 1.0), (20.0, 0.8)];
+    for (size, paper) in sizes.into_iter().flat_map(|size| papers.map(|paper| (size, paper))) {
+        for (step, (elevation, projection)) in (0..40).flat_map(|step| {
+            [(0.15, PERSPECTIVE), (0.5, Projection::Orthographic), (1.2, PERSPECTIVE)]
+                .map(|view| (step, view))
+        }) {
+            let camera = camera(way(f64::from(step) * 0.157, elevation), 30.0, projection);
+            let axes = Axes::new(AxesStyle::Edges);
+            let layout = layout_on(paper, &around(size), &camera, &axes, Economy::None);
+            let layout = layout.expect("a layout");
+            let mm = width(&layout) / paper.0;
+            let name = format!("{size} on {paper:?} mm, {step} {elevation}");
+            let ink: Vec<Vec<DVec2>> = layout.axes.iter().flat_map(axis::LaidAxis::ink).collect();
+            for axis in &layout.axes {
+                let ticks = axis.ticks.iter().map(|tick| [tick.foot, tick.tip]);
+                for [foot, tip] in ticks.clone().chain(axis.minors.iter().copied()) {
+                    let way = (tip - foot).normalize();
+                    // 50° from the normal of the axis, and no more.
+                    assert!(way.dot(axis.out) >= 0.6427, "{name}: {way}");
+                    n_slanted += usize::from(way.dot(axis.out) < 0.9);
+                }
+                let along = (axis.ends[1] - axis.ends[0]).normalize();
+                let feet = ticks.chain(axis.minors.iter().copied()).map(|[foot, _]| foot);
+                let mut feet: Vec<f64> = feet.map(|foot| foot.dot(along)).collect();
+                feet.sort_by(f64::total_cmp);
+                if !axis.minors.is_empty() {
+                    let is_apart = |pair: &[f64]| pair[1] - pair[0] > 0.999 * mm;
+                    assert!(feet.windows(2).all(is_apart), "{name}");
+                }
+                n_minors += axis.minors.len();
+                for number in axis.ticks.iter().filter_map(|tick| tick.number.as_ref()) {
+                    let is_clear = |ink: &Vec<DVec2>| number.is_clear_of(ink, 0.49 * paper.1 * mm);
+                    assert!(ink.iter().all(is_clear), "{name}");
+                    n_numbers += 1;
+                }
+            }
+        }
+    }
+    assert!(n_slanted > 200 && n_minors > 1000 && n_numbers > 1000);
+}
+
+/// The images of two ends, in whole billionths, in order.
+fn line([a, b]: [DVec2; 2]) -> [[i64; 2]; 2] {
+    let [a, b] = [a, b].map(|p| p.to_array().map(|x| (x * 1e9).round() as i64));
+    [a.min(b), a.max(b)]
+}
+
+#[test]
+fn walls_are_the_faces_behind_with_a_line_at_each_number_inside() {
+    let around = around(dvec3(10.0, 12.0, 6.0));
+    // From outside of all faces; between the two of x, nearer to either; straight on; from below.
+    let eyes = [
+        dvec3(20.0, -30.0, 15.0),
+        dvec3(-30.0, 20.0, 15.0),
+        dvec3(1.0, -40.0, 10.0),
+        dvec3(-1.0, -40.0, 10.0),
+        dvec3(2.0, -40.0, 1.0),
+        dvec3(25.0, 30.0, -12.0),
+    ];
+    for (eye, parallel) in eyes.into_iter().flat_map(|eye| [(eye, false), (eye, true)]) {
+        let projection = if parallel { Projection::Orthographic } else { PERSPECTIVE };
+        let camera = camera(eye, 1.0, projection);
+        let layout = layout(&around, &camera, &Axes::new(AxesStyle::Back), Economy::None);
+        let layout = layout.expect("a layout");
+        let toward_eye = |axis: usize, is_high: bool| {
+            let side = if is_high { around.high[axis] } else { around.low[axis] };
+            if parallel { eye[axis] } else { eye[axis] - side }
+        };
+        let mut expected = Vec::new();
+        for (axis, is_high) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+            let outwards = |is_high: bool| if is_high { 1.0 } else { -1.0 };
+            let is_behind = |is_high: bool| toward_eye(axis, is_high) * outwards(is_high) < 0.0;
+            // Of two opposite faces that are both seen from inside, the nearer one is none.
+            let [own, other] = [is_high, !is_high].map(|side| toward_eye(axis, side).abs());
+            if !is_behind(is_high) || is_behind(!is_high) && own < other {
+                continue;
+            }
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            for (across, along) in [(b, c), (c, b)] {
+                let of_axis = layout.axes.iter().find(|laid| laid.axis == across);
+                let ticks = of_axis.and_then(|laid| laid.chosen.as_ref());
+                let ticks = ticks.into_iter().flat_map(|ticks| &ticks.majors);
+                let inner = ticks.map(|(value, _)| *value);
+                let ends = [around.low[across], around.high[across]];
+                for at in inner.filter(|at| !ends.contains(at)).chain(ends) {
+                    expected.push(line([around.low, around.high].map(|end| {
+                        let mut p = end;
+                        p[axis] = if is_high { around.high[axis] } else { around.low[axis] };
+                        (p[across], p[along]) = (at, end[along]);
+                        camera.image(p)
+                    })));
+                }
+            }
+        }
+        let axes: Vec<_> = layout.axes.iter().map(|axis| line(axis.ends)).collect();
+        expected.retain(|line| !axes.contains(line));
+        expected.sort_unstable();
+        // Two faces share an edge.
+        expected.dedup();
+        let wires = layout.wires().iter().map(|wire| line(wire.ends.map(|p| camera.image(p))));
+        let strokes = layout.strokes();
+        let drawn = strokes.iter().filter(|stroke| stroke.kind == crate::strokes::StrokeKind::Back);
+        let drawn = drawn.map(|stroke| line([stroke.points[0], stroke.points[1]]));
+        let mut found: Vec<_> = wires.chain(drawn).collect();
+        found.sort_unstable();
+        assert_eq!(found, expected, "{eye} {projection:?}");
+    }
 }
 
 #[test]

@@ -81,6 +81,12 @@ pub(super) fn is_between_walls(bbox: &BoundingBox, edge: &BoxEdge) -> bool {
     bbox.place(edge) == EdgePlace::Back && is_wall(1) && is_wall(2)
 }
 
+/// Whether an edge is behind the surface: it borders a wall, and both of its faces are seen from inside. If
+/// the eye is between two opposite faces, the nearer one is no wall, but borders others.
+pub(super) fn is_behind(bbox: &BoundingBox, edge: &BoxEdge) -> bool {
+    bbox.place(edge) == EdgePlace::Back && is_beside_wall(bbox, edge)
+}
+
 /// Whether an edge borders a face behind the surface.
 pub(super) fn is_beside_wall(bbox: &BoundingBox, edge: &BoxEdge) -> bool {
     [1, 2].iter().any(|k| {
