@@ -201,6 +201,28 @@ mod tests {
     }
 
     #[test]
+    fn a_cedilla_hangs_below_its_letter_and_other_marks_stand_above_theirs() {
+        let span = |line: &str| {
+            let ys = text(line, 6.0).0.into_iter().flatten().map(|p| p.y);
+            ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)))
+        };
+        for (marked, plain) in ["çc", "Şs", "Çc"].map(|pair| {
+            let plain: String = pair.chars().skip(1).collect();
+            let marked: String = pair.chars().take(1).collect();
+            let is_capital = marked.chars().all(char::is_uppercase);
+            (marked, if is_capital { plain.to_uppercase() } else { plain })
+        }) {
+            let ((low, high), (base, top)) = (span(&marked), span(&plain));
+            assert!(low < base - 1.0 && high == top, "{marked}: {low} to {high}");
+        }
+        for (marked, plain) in "àâãäåčőżÀÂÃÄÅČŐŻ".chars().zip("aaaaacozAAAAACOZ".chars())
+        {
+            let ((low, high), (base, top)) = (span(&marked.to_string()), span(&plain.to_string()));
+            assert!(high > top + 0.5 && low == base, "{marked}: {low} to {high}");
+        }
+    }
+
+    #[test]
     fn accents_can_follow_their_letters() {
         assert_eq!(text("Gru\u{308}ße, A\u{30a}s", 6.0), text("Grüße, Ås", 6.0));
         assert_ne!(text("ü", 6.0).0, text("u", 6.0).0);

@@ -223,6 +223,23 @@ mod tests {
     }
 
     #[test]
+    fn samples_of_one_entry_are_side_by_side() {
+        let of = |n: u16| (StrokeKind::Grid, SurfacePart { sheet: n, ..SurfacePart::default() });
+        let samples = (1..=4).map(of).collect();
+        let entry = LegendEntry { text: "all of them".to_owned(), samples, dashes: &[] };
+        let strokes = legend(&[entry], LegendPlace::Right, (DVec2::ZERO, DVec2::ONE), 3.0, 0.5);
+        let samples = around(&strokes, StrokeKind::Grid);
+        // Each takes a quarter of 10 mm.
+        assert_eq!(samples.len(), 4);
+        let from = samples[0][0];
+        for (k, sample) in (0..).zip(samples) {
+            let at = [k, k + 1].map(|k| from + dvec2(1.25 * f64::from(k), 0.0));
+            let off = sample[0].distance(at[0]).max(sample[1].distance(at[1]));
+            assert!(off < 1e-12, "{k}: {sample:?}");
+        }
+    }
+
+    #[test]
     fn dashes_fill_a_sample() {
         assert_eq!(pattern(10.0, &[]), [[0.0, 10.0]]);
         assert_eq!(pattern(10.0, &[4.0, 1.0]), [[0.0, 4.0], [5.0, 9.0]]);

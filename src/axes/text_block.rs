@@ -181,6 +181,19 @@ mod tests {
     }
 
     #[test]
+    fn the_first_line_is_the_uppermost() {
+        let lines = ["i", "WWW", "i"].map(str::to_owned);
+        let widest = |lines: &[String]| {
+            let mut drawn = Strokes::default();
+            TextBlock::new(lines.to_vec(), 1.0, DVec2::X).draw(StrokeKind::Text, &mut drawn);
+            let points = drawn.iter().flat_map(|stroke| stroke.points.to_vec());
+            points.max_by(|p, q| p.x.total_cmp(&q.x)).expect("ink").y
+        };
+        assert!(widest(&lines[..2]) < -0.3 && widest(&lines[1..]) > 0.3);
+        assert!(widest(&lines).abs() <= 0.5);
+    }
+
+    #[test]
     fn turned_text_is_clear_of_what_its_upright_box_would_touch() {
         let mut text = TextBlock::new(vec!["diagonal".to_owned()], 1.0, dvec2(0.6, 0.8));
         text.anchor = dvec2(3.0, 4.0);

@@ -93,6 +93,7 @@ mod tests {
         assert_eq!(best(0.1, 1000.0, false).0, "10^{−1} 10^{0} 10^{1} 10^{2} 10^{3}");
         assert_eq!(best(0.1, 100.0, false).0, "0.1 1 10 100");
         assert_eq!(best(2.0, 2e4, false).0, "10^{1} 10^{2} 10^{3} 10^{4}");
+        assert_eq!(best(1e-10, 1e5, false).0, "10^{−9} 10^{−6} 10^{−3} 10^{0} 10^{3}");
         assert_eq!(best(1e-20, 1.0, false).0.split(' ').count(), 7);
         assert_eq!(best(1e-300, 1e300, false).0.split(' ').count(), 7);
     }

@@ -119,6 +119,26 @@ mod tests {
     }
 
     #[test]
+    fn ticks_are_evenly_spaced_and_no_further_one_fits() {
+        let mut n_checked = 0;
+        for (low, length) in (-40..40).flat_map(|low| (1..40).map(move |length| (low, length))) {
+            let [low, high] = [low, low + length].map(|k| f64::from(k) / 7.0);
+            for ticks in proposals(&range(low, high), TickRule::Round, 5.0) {
+                let values: Vec<f64> = ticks.majors.iter().map(|(value, _)| *value).collect();
+                let [first, second, ..] = values[..] else { continue };
+                let (step, last) = (second - first, values[values.len() - 1]);
+                let is_even = |pair: &[f64]| (pair[1] - pair[0] - step).abs() < 1e-9 * step;
+                assert!(values.windows(2).all(is_even), "{low}:{high}: {values:?}");
+                assert!(low <= first && last <= high, "{low}:{high}: {values:?}");
+                let is_full = first - step < low && last + step > high;
+                assert!(is_full, "{low}:{high}: {values:?}");
+                n_checked += 1;
+            }
+        }
+        assert!(n_checked > 10_000, "{n_checked}");
+    }
+
+    #[test]
     fn the_same_ranges_in_other_units_have_the_same_ticks() {
         for exponent in -250..250 {
             let end: f64 = format!("1.2e{exponent}").parse().expect("a number");
@@ -170,7 +190,8 @@ mod tests {
         assert_eq!(minors(-8.0, 8.0), [-7., -6., -5., -3., -2., -1., 1., 2., 3., 5., 6., 7.]);
         assert_eq!(minors(-6.0, 6.0), [-5., -4., -2., -1., 1., 2., 4., 5.]);
         // Beyond the last number, too.
-        assert_eq!(minors(-7.0, 7.0)[0], -7.0);
+        let minors = minors(-7.0, 7.0);
+        assert_eq!([minors[0], minors[minors.len() - 1]], [-7.0, 7.0]);
     }
 
     #[test]

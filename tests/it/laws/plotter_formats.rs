@@ -163,6 +163,11 @@ fn hpgl_names_what_a_plotter_cannot_do() {
     assert!(error(hpgl::LoadedPlotter::new(&odd, "hp7475a", None)).contains("100 × 100 mm"));
     let many = plot(297.0, 210.0, &[&[] as &[&[_]]; 7]);
     assert!(error(hpgl::LoadedPlotter::new(&many, "hp7475a", None)).contains("it holds 6"));
+    for (number, is_there) in [(0, false), (1, true), (6, true), (7, false)] {
+        let mut one = a4.clone();
+        one.layers[0].number = number;
+        assert_eq!(hpgl::LoadedPlotter::new(&one, "hp7475a", None).is_ok(), is_there, "{number}");
+    }
 }
 
 /// What a machine would draw: strokes with the pen down, and the feeds seen.

@@ -86,6 +86,31 @@ fn a_nearly_coplanar_vertex_lies_on_the_side_that_integers_say() {
 }
 
 #[test]
+fn a_plane_seen_nearly_along_itself_faces_as_integers_say() {
+    let (mut rng, mut n_sides) = (Rng(10), [0; 3]);
+    for i in 0..3000 {
+        let scale = 2f64.powi(SCALES[i % 3]);
+        let [p, q, r] = [0; 3].map(|_| point(&mut rng));
+        let along = number(&mut rng) * (q - p) + number(&mut rng) * (r - p);
+        let (eye, target) = (p * scale, (p + along) * scale);
+        let camera = Camera::new(eye, target, DVec3::Z, Projection::Orthographic).unwrap();
+        let positions = [p, q, r].map(|p| p * scale);
+        let planes = Planes::new(&positions, &[[0, 1, 2]]).seen_by(&camera);
+        let found = as_number(planes.side_of_eye(PlaneName::Triangle(0)));
+        // The eye is as far as can be, against the direction of view.
+        let all = [positions.as_slice(), &[camera.forward()]].concat();
+        let k = common_exponent(all.iter().flat_map(|p| p.to_array()));
+        let [p, q, r, forward] = <[DVec3; 4]>::try_from(all.as_slice())
+            .unwrap()
+            .map(|p| p.to_array().map(|x| scaled(x, k)));
+        let normal = cross(&minus(&q, &p), &minus(&r, &p));
+        assert_eq!(found, -sign(&dot(&normal, &forward)), "{positions:?}");
+        n_sides[(found + 1) as usize] += 1;
+    }
+    assert!(n_sides[0] > 500 && n_sides[2] > 500, "{n_sides:?}");
+}
+
+#[test]
 fn a_cut_edge_ends_on_the_side_that_integers_say() {
     let (mut rng, mut n_checked) = (Rng(2), 0);
     for i in 0..3000 {

@@ -11,6 +11,12 @@ use hiddenline::stages::strokes::HiddenLines;
 /// Strokes as (visible, first x, last x) of the level lines of some faces, seen from above, one
 /// millimeter to the unit.
 fn level_strokes(faces: &[[DVec3; 4]], shortest_stroke_mm: f64) -> Vec<(bool, f64, f64)> {
+    let options = DrawOptions { shortest_stroke_mm, ..DrawOptions::default() };
+    drawn_strokes(faces, options)
+}
+
+/// The same with other options.
+fn drawn_strokes(faces: &[[DVec3; 4]], options: DrawOptions) -> Vec<(bool, f64, f64)> {
     let mut soup = PolygonSoup::default();
     for face in faces {
         let first = soup.positions.len() as u32;
@@ -24,8 +30,7 @@ fn level_strokes(faces: &[[DVec3; 4]], shortest_stroke_mm: f64) -> Vec<(bool, f6
         lines: LineSelection::all_edges(),
         hidden: HiddenLines::Solid,
         apart_by_kind: true,
-        shortest_stroke_mm,
-        ..DrawOptions::default()
+        ..options
     };
     let drawing = draw(&scene, &camera, &options, 1.0).drawing;
     let mut strokes: Vec<(bool, f64, f64)> = Vec::new();
@@ -77,4 +82,20 @@ fn short_hidden_strokes_are_drawn_and_short_visible_ones_are_not() {
     // What counts is how far it reaches.
     assert_eq!(level_strokes(&[plate, above], 0.7), [(true, 1.0, 1.5); 2]);
     assert_eq!(level_strokes(&[plate, above], 0.71), []);
+}
+
+#[test]
+fn without_a_pen_too_short_hidden_strokes_are_drawn_and_short_visible_ones_are_not() {
+    let strokes = |faces: &[[DVec3; 4]], shortest_stroke_mm: f64| {
+        let options =
+            DrawOptions { shortest_stroke_mm, pen_width_mm: 0.0, ..DrawOptions::default() };
+        drawn_strokes(faces, options)
+    };
+    let plate = level([-5.0, 5.0], [-5.0, 5.0], 1.0);
+    let below = level([1.0, 1.5], [-0.25, 0.25], 0.0);
+    assert_eq!(strokes(&[plate, below], 3.0), [(false, 1.0, 1.5); 2]);
+    let above = level([1.0, 1.5], [-0.25, 0.25], 2.0);
+    // Here the length of all four sides counts.
+    assert_eq!(strokes(&[plate, above], 2.01), []);
+    assert_eq!(strokes(&[plate, above], 1.99), [(true, 1.0, 1.5); 2]);
 }

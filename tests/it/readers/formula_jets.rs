@@ -1,5 +1,6 @@
 //! Enclosures of formulas: values, slopes and second derivatives of samples lie inside.
 
+use hiddenline::stages::surface::AxisScale;
 use hiddenline::stages::surface::formula::{Axis, Class, Formula, Interval, Jet, Variables};
 
 /// A generator of random numbers: xorshift.
@@ -392,6 +393,11 @@ fn classes_say_where_formulas_end_jump_and_bend() {
         ("exp(1000*x)", 0.5, 1.0, Class::Partial),
         ("sign(floor(x))", 1.5, 2.5, Class::Smooth),
         ("gamma(x)", 0.5, 1.0, Class::Continuous),
+        ("x^2.5", 0.0, 1.0, Class::Smooth),
+        ("x^1.5", 0.0, 1.0, Class::Lipschitz),
+        ("x^0.5", 0.0, 1.0, Class::Continuous),
+        ("x^-0.5", 0.0, 1.0, Class::Partial),
+        ("x^1.5", 0.5, 1.0, Class::Smooth),
     ] {
         assert_eq!(over(text, low, high), class, "{text} from {low} to {high}");
     }
@@ -414,6 +420,101 @@ fn a_line_gives_what_a_box_of_no_width_gives() {
                     Axis::Second => jets.over(fixed, range, [0.0, 1.0], &mut room),
                 };
                 assert_eq!(line.over(range), boxed, "{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rounded_operations_enclose_the_exact_ones() {
+    let mut random = Random::new(13);
+    let graphs = ["1/x", "x/y", "x*y", "x + y", "x^2", "sqrt(x)"].map(|text| parsed(text).jets());
+    let mut room = Vec::new();
+    for _ in 0..2000 {
+        let [a, b] = [0; 2].map(|_| random.between(1.0, 2.0));
+        let signed = |x: f64, random: &mut Random| if random.below(2) == 0 { x } else { -x };
+        let (a, b) = (signed(a, &mut random), signed(b, &mut random));
+        let values: Vec<Interval> = graphs
+            .iter()
+            .map(|jets| {
+                let [x, y] = [a, b].map(Interval::point);
+                jets.over(x, y, [1.0, 0.0], &mut room).value
+            })
+            .collect();
+        // A multiplication and an addition are rounded together, so the sign of the result is right.
+        let exceeds = |quotient: f64, above: f64, below: f64| {
+            quotient.mul_add(below, -above) * below.signum()
+        };
+        let reciprocal = Interval::point(a).recip();
+        for (value, above, below) in [(reciprocal, 1.0, a), (values[0], 1.0, a), (values[1], a, b)]
+        {
+            let (low, high) = (exceeds(value.low, above, below), exceeds(value.high, above, below));
+            assert!(low <= 0.0 && high >= 0.0, "{above} / {below}: {value:?}");
+        }
+        for (value, a, b) in [(values[2], a, b), (values[4], a, a)] {
+            assert!(a.mul_add(b, -value.low) >= 0.0, "{a} · {b}: {value:?}");
+            assert!(a.mul_add(b, -value.high) <= 0.0, "{a} · {b}: {value:?}");
+        }
+        // What rounding takes off a sum.
+        let sum = a + b;
+        let of_b = sum - a;
+        let rest = (a - (sum - of_b)) + (b - of_b);
+        assert!(values[3].low - sum <= rest && rest <= values[3].high - sum, "{a} + {b}");
+        if a > 0.0 {
+            let Interval { low, high } = values[5];
+            assert!(low.mul_add(low, -a) <= 0.0 && high.mul_add(high, -a) >= 0.0, "√{a}");
+        }
+    }
+}
+
+#[test]
+fn poles_of_the_tangent_are_found_between_neighboring_numbers() {
+    let mut random = Random::new(14);
+    let jets = parsed("tan(x)").jets();
+    let (mut room, mut n_checked) = (Vec::new(), 0);
+    for _ in 0..4000 {
+        let quarters = 2.0 * random.between(0.0, 1e3).powi(3).floor() + 1.0;
+        let mut x = quarters * std::f64::consts::FRAC_PI_2;
+        (0..8).for_each(|_| x = x.next_down());
+        // The tangent is positive before a pole and negative after it.
+        for _ in 0..16 {
+            let next = x.next_up();
+            if libm::tan(x) > 0.0 && libm::tan(next) < 0.0 {
+                let jet = jets.over(Interval::new(x, next), Interval::ZERO, [1.0, 0.0], &mut room);
+                assert!(jet.class <= Class::Partial, "{quarters} quarter turns: {jet:?}");
+                n_checked += 1;
+            }
+            x = next;
+        }
+    }
+    assert!(n_checked > 1000, "{n_checked}");
+}
+
+#[test]
+fn logarithmic_axes_are_enclosed_in_their_own_coordinates() {
+    let mut random = Random::new(15);
+    let scale = |factor: f64, is_log: bool| AxisScale { factor, is_log };
+    let scales = [scale(2.0, true), scale(0.5, true), scale(3.0, true)];
+    let drawn = |text: &str, u: f64, v: f64| {
+        let [x, y] = [u / 2.0, v / 0.5].map(|at| libm::pow(10.0, at));
+        3.0 * libm::log10(parsed(text).value(x, y))
+    };
+    for text in ["x", "x*y + 1", "exp(x/10)", "r", "2 + sin(x)*cos(y)", "x^2 + y^3"] {
+        let jets = parsed(text).jets().scaled(scales);
+        let mut room = Vec::new();
+        for _ in 0..200 {
+            let [u, v] = [0; 2].map(|_| random.between(-1.0, 1.0));
+            let size = 0.1 * random.between(0.0, 1.0);
+            let a = Interval::new(u, u + size);
+            let jet = jets.over(a, Interval::point(v), [1.0, 0.0], &mut room);
+            let at = |part: f64| drawn(text, u + part * size, v);
+            for part in [0.0, 0.3, 1.0] {
+                assert!(is_near(at(part), jet.value, 1e-12), "{text}: {} {jet:?}", at(part));
+            }
+            if size > 1e-3 && jet.class == Class::Smooth {
+                // Somewhere the slope is that of the chord.
+                let slope = (at(1.0) - at(0.0)) / size;
+                assert!(is_near(slope, jet.first, 1e-9), "{text}: {slope} {jet:?}");
             }
         }
     }

@@ -206,3 +206,34 @@ fn windows_away_from_a_crossing_are_covered_by_the_nearer_face() {
     // 64 by 64 leaves, of which those along the crossing alone are decided one by one.
     assert!(counts.leaves <= 2 * 64 && counts.covered >= 2, "{counts:?}");
 }
+
+#[test]
+fn a_face_that_a_surrounding_one_crosses_shows_where_it_is_in_front() {
+    // A ramp, and a small plate that it comes through at x = 1/3.
+    let at = 1.0 / 3.0;
+    let ramp_and_plate =
+        [ramp([-8.0, 8.0], [-8.0, 8.0], |x| x), ramp([-4.0, 4.0], [-4.0, 4.0], |_| at)];
+    let mut model = Model::default();
+    ramp_and_plate.iter().for_each(|face| model.face(face));
+    let sight = orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+    let (scene, camera) = built(&model.seen_by("ramp and plate", sight));
+    // Both windows lie within the ramp; the second one is within the plate, too.
+    for (reach, leaf) in [(6.0, 0.125), (3.0, 0.0625)] {
+        let [low, high] = [-reach, reach].map(|x| camera.image(glam::DVec3::new(x, x, 0.0)));
+        let window = Some((low.min(high), low.max(high)));
+        for subdivision in BOTH {
+            let options = WarnockOptions { leaf: Some(leaf), window, subdivision };
+            let painting = solve(&scene, &camera, &options).unwrap().0;
+            for (i, j) in (0..24).flat_map(|i| (0..24).map(move |j| (i, j))) {
+                let [x, y] = [i, j].map(|k| reach * (f64::from(k) / 11.5 - 1.0) * 0.97);
+                let beside = [(x - at).abs(), (x.abs() - 4.0).abs(), (y.abs() - 4.0).abs()];
+                if beside.iter().all(|away| *away > 2.0 * leaf) {
+                    let is_plate = x < at && x.abs() < 4.0 && y.abs() < 4.0;
+                    let image = camera.image(glam::DVec3::new(x, y, 0.0));
+                    let found = painted(&painting, image).0;
+                    assert_eq!(found, Some(u32::from(is_plate)), "{subdivision:?}: {x}, {y}");
+                }
+            }
+        }
+    }
+}

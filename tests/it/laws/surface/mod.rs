@@ -1,5 +1,6 @@
 //! Function surfaces: engines against brute force and closed forms.
 
+mod axes;
 mod base_levels;
 mod brute;
 mod damage;
