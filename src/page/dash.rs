@@ -294,6 +294,48 @@ mod tests {
     }
 
     #[test]
+    fn a_closed_line_has_the_same_dashes_wherever_it_begins() {
+        let corners = [(0, 0), (20, 0), (20, 12), (0, 12)].map(|(x, y)| dvec2(x.into(), y.into()));
+        let around = |first: usize, part: f64| {
+            let mut points: Vec<DVec2> = (0..4).map(|k| corners[(first + k) % 4]).collect();
+            if part > 0.0 {
+                let start = points[3].lerp(points[0], part);
+                points.insert(0, start);
+            }
+            points.push(points[0]);
+            let all = dashes(&points, OPEN);
+            let is_inked = |p: DVec2| {
+                let mut pairs = all.iter().flat_map(|dash| dash.windows(2));
+                pairs.any(|pair| {
+                    let way = pair[0].distance(p) + p.distance(pair[1]);
+                    way < pair[0].distance(pair[1]) + 1e-9
+                })
+            };
+            let sides = (0..4).map(|k| (corners[k], corners[(k + 1) % 4]));
+            let places = sides
+                .flat_map(|(a, b)| (0..200).map(move |k| a.lerp(b, (f64::from(k) + 0.37) / 200.0)));
+            places.map(is_inked).collect::<Vec<bool>>()
+        };
+        let expected = around(0, 0.0);
+        for (first, part) in (0..4).flat_map(|first| [(first, 0.0), (first, 0.3), (first, 0.5)]) {
+            assert_eq!(around(first, part), expected, "{first} {part}");
+        }
+    }
+
+    #[test]
+    fn a_small_ring_has_three_gaps_at_least() {
+        for radius in [0.3, 0.7, 1.1, 1.4] {
+            let angle = |k: u32| f64::from(k % 60) * 6f64.to_radians();
+            let ring: Vec<DVec2> = (0..=60).map(|k| DVec2::from_angle(angle(k)) * radius).collect();
+            let all = dashes(&ring, OPEN);
+            // The first and the last dash are one.
+            assert_eq!(all.len(), 4, "{radius}");
+            let whole = length(&[ring]);
+            assert!((length(&all) - whole * 2.0 / 3.0).abs() < 1e-9, "{radius}");
+        }
+    }
+
+    #[test]
     fn dashes_follow_a_gentle_bend() {
         let points: Vec<_> = (0..=40).map(|i| dvec2(f64::from(i) * 0.5, 0.001)).collect();
         let all = dashes(&points, OPEN);

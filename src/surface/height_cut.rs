@@ -181,4 +181,17 @@ mod tests {
         let found: f64 = mesh.triangles.iter().map(volume).sum();
         assert!((found - expected).abs() < 1e-15, "{found}");
     }
+
+    #[test]
+    fn a_surface_that_is_turned_over_is_cut_at_the_same_places() {
+        for factor in [2.0, -1.0, -0.5] {
+            let mut mesh = tent();
+            mesh.positions.iter_mut().for_each(|p| p.z *= factor);
+            let cut = HeightCut { low: 0.25, high: 0.75, is_clamped: false };
+            mesh.cut_off(&cut.scaled(factor));
+            assert!((area(&mesh) - 2.0).abs() < 1e-15, "{factor}");
+            let length: f64 = cuts(&mesh).iter().map(|cut| cut[1]).sum();
+            assert!((length - 8.0).abs() < 1e-12, "{factor}: {length}");
+        }
+    }
 }

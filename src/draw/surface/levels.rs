@@ -213,6 +213,15 @@ mod tests {
     }
 
     #[test]
+    fn the_level_at_zero_has_no_sign() {
+        // 0.3 − 3 · 0.1 is not 0 but for rounding.
+        let scale = AxisScale::DATA;
+        let set = LevelSet::stepped((-0.35, 0.35), scale, (0.1, 0.3), None).expect("levels");
+        let texts: Vec<String> = (1..=7).map(|number| set.text(number)).collect();
+        assert_eq!(texts, ["−0.3", "−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]);
+    }
+
+    #[test]
     fn steps_hit_their_multiples_and_index_lines_are_multiples_of_the_step() {
         let found = set(Levels::Every { step: 5.0, offset: 0.0 }, None, [-11.0, 31.0]);
         let expected = ["−10", "−5", "0", "5", "10", "15", "20", "25", "30"];

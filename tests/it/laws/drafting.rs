@@ -120,6 +120,57 @@ fn ink_on_ink_is_drawn_once_the_more_important_line_whole() {
 }
 
 #[test]
+fn a_closed_stroke_does_not_lie_on_itself_where_it_begins() {
+    for start in [dvec2(0.0, 0.0), dvec2(6.0, 0.0), dvec2(11.9, 0.0)] {
+        let square = [start, dvec2(12.0, 0.0), dvec2(12.0, 12.0), dvec2(0.0, 12.0), DVec2::ZERO];
+        let strokes = of_wires(&[&square, &[DVec2::ZERO, start]], plain());
+        assert!((ink(&strokes) - 48.0).abs() < 1e-9, "{start}: {}", ink(&strokes));
+        let closed = [&square[..], &[start]].concat();
+        let strokes = of_wires(&[&closed], plain());
+        assert!((ink(&strokes) - 48.0).abs() < 1e-9, "{start}: {}", ink(&strokes));
+    }
+}
+
+#[test]
+fn wavering_ink_on_a_line_is_drawn_once_however_its_segments_turn() {
+    let line = [dvec2(0.0, 0.0), dvec2(40.0, 0.0)];
+    let wavering: Vec<DVec2> = (0..=400)
+        .map(|k| dvec2(10.0 + 0.05 * f64::from(k), if k % 2 == 0 { 0.03 } else { 0.06 }))
+        .collect();
+    let strokes = of_wires(&[&line, &wavering], plain());
+    assert!((ink(&strokes) - 40.0).abs() < 1.0, "{}", ink(&strokes));
+}
+
+#[test]
+fn a_short_stroke_that_lies_wholly_on_another_is_left_out() {
+    let options = || DrawOptions { shortest_stroke_mm: 0.0, ..plain() };
+    for length in [0.4, 0.5, 2.0] {
+        let line = [dvec2(0.0, 0.0), dvec2(40.0, 0.0)];
+        let on_it = [dvec2(20.0, 0.1), dvec2(20.0 + length, 0.1)];
+        let strokes = of_wires(&[&line, &on_it], options());
+        assert!((ink(&strokes) - 40.0).abs() < 1e-9, "{length}: {}", ink(&strokes));
+        let beside = [dvec2(20.0, 0.4), dvec2(20.0 + length, 0.4)];
+        let strokes = of_wires(&[&line, &beside], options());
+        assert!((ink(&strokes) - 40.0 - length).abs() < 1e-9, "{length}: {}", ink(&strokes));
+    }
+}
+
+#[test]
+fn of_what_is_thinned_away_for_the_most_part_no_scraps_are_left() {
+    // A line that leaves a crowd for 3 mm, and one that leaves it for 12 mm.
+    let crowd = [dvec2(0.0, 0.0), dvec2(60.0, 0.0)];
+    let bump = |x: f64, length: f64| {
+        [dvec2(x, 0.35), dvec2(x + 1.0, 1.8), dvec2(x + length, 1.8), dvec2(x + length + 1.0, 0.35)]
+    };
+    let line =
+        |length: f64| [&[dvec2(2.0, 0.35)][..], &bump(20.0, length), &[dvec2(55.0, 0.35)]].concat();
+    let options = || DrawOptions { thin_mm: Some(0.4), ..plain() };
+    let left = |length: f64| ink(&of_wires(&[&crowd, &line(length)], options())) - 60.0;
+    assert!(left(0.5).abs() < 1e-9, "{}", left(0.5));
+    assert!(left(12.0) > 11.0, "{}", left(12.0));
+}
+
+#[test]
 fn a_stroke_that_comes_back_on_itself_is_drawn_once() {
     let hairpin = [dvec2(0.0, 0.0), dvec2(20.0, 0.0), dvec2(20.0, 0.02), dvec2(0.0, 0.02)];
     let once = ink(&of_wires(&[&hairpin], plain()));
@@ -328,6 +379,48 @@ fn lines_that_meet_have_no_halo_and_a_line_that_ends_behind_a_face_stops_short()
     let rod = [dvec3(-20.0, 0.0, 0.0), dvec3(10.0, 0.0, 0.0)];
     let strokes = drawn(&scene(&[&rod], &[&plate]), halo).drawing;
     assert!((ink(&strokes) - (80.0 + 20.0 - 0.8)).abs() < 1e-9, "{}", ink(&strokes));
+}
+
+#[test]
+fn halos_are_as_wide_in_perspective_and_for_what_is_nearer_by_a_pens_width_there() {
+    // A millimeter of the model is one on paper at the distance of the eye.
+    let projection = Projection::Perspective { fov_deg: 20.0, near: 1e-6 };
+    let camera = Camera::new(dvec3(0.0, 0.0, 1000.0), DVec3::ZERO, DVec3::Y, projection).unwrap();
+    let n_strokes = |height: f64| {
+        let near = [dvec3(-20.0, 0.0, height), dvec3(20.0, 0.0, height)];
+        let far = [dvec3(0.0, -20.0, 0.0), dvec3(0.0, 20.0, 0.0)];
+        let options = DrawOptions { halo_mm: 0.8, pen_width_mm: PEN, ..plain() };
+        let strokes = draw(&scene(&[&near, &far], &[]), &camera, &options, 1000.0).drawing;
+        let gap = 40.0 + 40.0 / (1.0 - height / 1000.0) - 1000.0 * ink(&strokes);
+        assert!(gap.abs() < 1e-6 || (gap - 1.6).abs() < 1e-6, "{height}: {gap}");
+        strokes.len()
+    };
+    assert_eq!([0.2, 0.29, 0.31, 1.0, 30.0].map(n_strokes), [2, 2, 3, 3, 3]);
+}
+
+#[test]
+fn creases_have_no_halo() {
+    // A roof over a rod: its ridge is a crease.
+    let side = |x: f64| {
+        [dvec3(0.0, -10.0, 9.0), dvec3(0.0, 10.0, 9.0), dvec3(x, 10.0, 4.0), dvec3(x, -10.0, 4.0)]
+    };
+    let mut other = side(-10.0);
+    other.reverse();
+    let mut soup = PolygonSoup::default();
+    soup.positions.extend(side(10.0));
+    soup.positions.extend(&other[..2]);
+    soup.push_face(&[0, 1, 2, 3]);
+    soup.push_face(&[1, 0, 4, 5]);
+    soup.positions.extend([dvec3(-8.0, 0.0, 0.0), dvec3(8.0, 0.0, 0.0)]);
+    soup.push_wire(&[6, 7]);
+    let scene = Scene::new(Mesh::new(soup).unwrap().0);
+    let options = DrawOptions { halo_mm: 0.8, hidden: HiddenLines::Solid, ..plain() };
+    let strokes = drawn(&scene, options).drawing;
+    let kinds: Vec<StrokeKind> = strokes.iter().map(|stroke| stroke.kind).collect();
+    assert!(kinds.contains(&StrokeKind::Crease), "{kinds:?}");
+    let hidden: Vec<&[DVec2]> = strokes.iter().filter(|s| s.qi > 0).map(|s| s.points).collect();
+    let length: f64 = hidden.iter().map(|points| points[0].distance(points[1])).sum();
+    assert!(hidden.len() == 1 && (length - 16.0).abs() < 1e-9, "{hidden:?}");
 }
 
 #[test]

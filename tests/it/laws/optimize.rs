@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::{DVec2, dvec2};
+use glam::{DVec2, Vec2Swizzles, dvec2};
 use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
 use hiddenline::stages::optimize::{
     Effort, Graph, Joints, OptimizeOptions, optimize, optimize_lines, optimize_watched, order,
@@ -234,6 +234,71 @@ fn closed_strokes_begin_where_the_pen_comes_by() {
         // A closed stroke is left where it was entered: 2 mm to the next, then past 10 and 2.
         assert!((pen_up(&ordered) - 14.0).abs() < 1e-9, "{}", pen_up(&ordered));
         assert!(ordered.iter().all(|line| line.len() == 5 && line[0] == line[4]));
+    }
+}
+
+#[test]
+fn closed_strokes_are_entered_anywhere_wherever_they_are_said_to_begin() {
+    let square = |x: f64, first: usize| {
+        let corners = [(0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0)];
+        (0..=4).map(|k| corners[(first + k) % 4]).map(|(dx, y)| dvec2(x + dx, y)).collect()
+    };
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        let lines = polylines(&[square(0.0, i), square(12.0, j), square(24.0, (i + j) % 4)]);
+        for effort in [Effort::Fast, Effort::Best] {
+            let ordered = order(&lines, effort).lines;
+            assert!((pen_up(&ordered) - 14.0).abs() < 1e-9, "{i} {j}: {}", pen_up(&ordered));
+        }
+    }
+}
+
+#[test]
+fn ink_farther_off_than_the_tolerance_is_kept_and_nearer_ink_is_not() {
+    let mut n_checked = 0;
+    for turn in 0..24 {
+        let way = DVec2::from_angle(f64::from(turn) * 0.2617);
+        let at = |x: f64, y: f64| dvec2(60.0, 60.0) + way * x + way.perp() * y;
+        for (off, is_kept) in [(0.5, false), (0.9, false), (1.2, true), (2.0, true)] {
+            let tolerance = 0.01;
+            // A second line beside the middle of the first one, and others around.
+            let mut lines = vec![vec![at(0.0, 0.0), at(40.0, 0.0)]];
+            lines.push(vec![at(10.0, off * tolerance), at(30.0, off * tolerance)]);
+            lines.extend((0..9).map(|k| {
+                let x = 4.0 * f64::from(k);
+                vec![at(x, 5.0 + x), at(x + 3.0, 9.0)]
+            }));
+            let graph = |tolerance: f64| {
+                let mut graph = Graph::new(&polylines(&lines), Joints::Near(0.0));
+                hiddenline::stages::optimize::remove_overlaps(&mut graph, tolerance);
+                graph.length_mm()
+            };
+            let saved = graph(0.0) - graph(tolerance);
+            let expected = if is_kept { 0.0 } else { 20.0 };
+            assert!((saved - expected).abs() < 0.1, "{turn} {off}: {saved}");
+            n_checked += 1;
+        }
+    }
+    assert_eq!(n_checked, 96);
+}
+
+#[test]
+fn ink_within_the_tolerance_is_found_on_both_sides_of_any_row_of_a_grid() {
+    // Six points over a square of 100 mm: rows that hold about one each are this high.
+    let row = (100.0f64 * 100.0 / 6.0).sqrt();
+    for k in -40..=40 {
+        let y = row + 0.0005 * f64::from(k);
+        let line = vec![dvec2(20.0, y), dvec2(80.0, y)];
+        let beside = vec![dvec2(30.0, y - 0.008), dvec2(70.0, y - 0.008)];
+        let across = vec![dvec2(0.0, 0.0), dvec2(100.0, 100.0)];
+        for turned in [false, true] {
+            let lines = [line.clone(), beside.clone(), across.clone()]
+                .map(|line| line.into_iter().map(|p| if turned { p.yx() } else { p }).collect());
+            let mut graph = Graph::new(&polylines(&lines), Joints::Near(0.0));
+            let before = graph.length_mm();
+            hiddenline::stages::optimize::remove_overlaps(&mut graph, 0.01);
+            let saved = before - graph.length_mm();
+            assert!((saved - 40.0).abs() < 0.01, "{k} {turned}: {saved}");
+        }
     }
 }
 

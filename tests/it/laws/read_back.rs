@@ -209,6 +209,93 @@ fn gcode_follows_each_template_in_its_place() {
     assert_eq!(text(&plot, false), "B;C1;S1;G0 1 2;D;G1 3 4;U;E1;Z;");
 }
 
+#[test]
+fn gcode_in_inches_has_all_lengths_in_inches() {
+    let text = "decimals = 4\nunit = 'in'\nfeed = 60\nstart = '{width} {height};'\nmove = '{x} {y};'\n\
+                line = '{x} {y};'\nlayer_start = '{pen_width};'\npen_down = ''\npen_up = ''\n\
+                layer_end = ''\npen_change = ''\nend = ''\n";
+    let profile = gcode::GcodeProfile::from_toml(text).unwrap();
+    let mut plot = plot();
+    plot.layers.truncate(1);
+    (plot.width_mm, plot.height_mm, plot.layers[0].pen.width_mm) = (254.0, 127.0, 0.508);
+    plot.layers[0].lines = polylines(&[&[(25.4, 0.0), (0.0, 12.7)]]);
+    let text = String::from_utf8(written(|out| gcode::write(&plot, &profile, out))).unwrap();
+    let numbers: Vec<f64> = text
+        .split([' ', ';', '\n'])
+        .filter(|word| !word.is_empty())
+        .map(|word| word.parse().unwrap())
+        .collect();
+    let flipped = if profile.flip_y { [5.0, 4.5] } else { [0.0, 0.5] };
+    assert_eq!(numbers, [10.0, 5.0, 0.02, 1.0, flipped[0], 0.0, flipped[1]]);
+}
+
+#[test]
+fn holes_of_areas_are_left_open_in_pdf_whichever_way_they_run() {
+    let square = |low: f64, high: f64| {
+        [(low, low), (high, low), (high, high), (low, high)].map(|(x, y)| dvec2(x, y))
+    };
+    for seam_mm in [0.0, 0.1] {
+        let mut plot = plot();
+        plot.layers.truncate(1);
+        plot.layers[0].lines = polylines(&[]);
+        plot.layers[0].fills.seam_mm = seam_mm;
+        plot.layers[0].fills.push([9, 9, 9], [square(10.0, 90.0), square(40.0, 60.0)]);
+        let bytes = written(|out| pdf::write(&plot, out));
+        let document = lopdf::Document::load_mem(&bytes).unwrap();
+        let page = *document.get_pages().values().next().unwrap();
+        let content = lopdf::content::Content::decode(&document.get_page_content(page)).unwrap();
+        let paints: Vec<&str> = content
+            .operations
+            .iter()
+            .map(|operation| operation.operator.as_str())
+            .filter(|operator| ["f", "F", "f*", "B", "B*", "b", "b*"].contains(operator))
+            .collect();
+        // The star stands for the even-odd rule.
+        assert_eq!(paints, [if seam_mm > 0.0 { "B*" } else { "f*" }]);
+    }
+}
+
+#[test]
+fn hpgl_parks_the_pen_where_the_machine_says_and_cuts_what_is_out_of_reach() {
+    for machine in hpgl::machines().unwrap() {
+        for paper in machine.paper.clone() {
+            let [w, h] = paper.size;
+            let mut plot = Plot { width_mm: w, height_mm: h, ..plot() };
+            plot.layers.truncate(1);
+            // In reach, far out, and in reach again: two strokes.
+            let (x, y) = (w / 2.0, h / 2.0);
+            let there_and_back =
+                [(x, y), (x + 9.0, y), (x + 2.0 * w, y - 9.0), (x + 9.0, y - 20.0), (x, y - 20.0)];
+            plot.layers[0].lines = polylines(&[&there_and_back]);
+            let profile =
+                hpgl::LoadedPlotter::on(&plot, machine.clone(), Some(&paper.names[0])).unwrap();
+            let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
+            let (starts, instructions) = read_hpgl(&text);
+            assert_eq!(starts.len(), 2, "{}: {text}", machine.name);
+            let [px, py] = paper.park;
+            let last: Vec<&str> = instructions.iter().rev().take(4).map(String::as_str).collect();
+            assert_eq!(last, ["IN", "SP0", &format!("PU{px},{py}"), "PA"], "{}", machine.name);
+            // No stroke leaves the reach.
+            for piece in text.split("PA;PU").skip(1).filter(|piece| piece.contains("PR;")) {
+                let numbers: Vec<i32> = piece
+                    .split(|c: char| !(c.is_ascii_digit() || c == '-'))
+                    .filter_map(|word| word.parse().ok())
+                    .collect();
+                let mut at = [0, 0];
+                for (k, pair) in numbers.chunks_exact(2).enumerate() {
+                    at = if k == 0 {
+                        [pair[0], pair[1]]
+                    } else {
+                        [at[0] + pair[0], at[1] + pair[1]]
+                    };
+                    let is_in = |at: i32, [low, high]: [i32; 2]| low <= at && at <= high;
+                    assert!(is_in(at[0], paper.x) && is_in(at[1], paper.y), "{}", machine.name);
+                }
+            }
+        }
+    }
+}
+
 /// Where the pen goes down, in plotter units, and all instructions.
 fn read_hpgl(text: &str) -> (Vec<[i32; 2]>, Vec<String>) {
     let instructions: Vec<String> =

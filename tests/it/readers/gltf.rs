@@ -199,6 +199,36 @@ fn materials_and_normals_are_kept() {
 }
 
 #[test]
+fn normals_stay_at_right_angles_to_faces_that_are_stretched_and_turned() {
+    let corners = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0_f32]];
+    let normal = [6.0 / 7.0, 3.0 / 7.0, 2.0 / 7.0_f32];
+    for transform in [
+        r#""scale":[1,1,5]"#,
+        r#""scale":[0.5,3,2],"rotation":[0.1,0.2,0.3,0.9]"#,
+        r#""matrix":[1,0,0,0, 0.7,1,0,0, -0.4,0.9,1,0, 0,0,0,1]"#,
+    ] {
+        let mut builder = Builder::default();
+        builder.points(&corners);
+        let normals = builder.points(&[normal; 3]);
+        let model = good(
+            "x.glb",
+            builder.finish(&format!(
+                r#""nodes":[{{"mesh":0,{transform}}}],"meshes":[{{"primitives":[
+                {{"attributes":{{"POSITION":0,"NORMAL":{normals}}}}}]}}]"#
+            )),
+        );
+        let positions = model.mesh.positions();
+        let [a, b, c] = [0, 1, 2].map(|k| positions[model.mesh.face(0)[k] as usize]);
+        let expected = (b - a).cross(c - a).normalize();
+        for found in model.mesh.corner_normals() {
+            let found = dvec3(found[0].into(), found[1].into(), found[2].into());
+            assert!(found.distance(expected) < 1e-6, "{transform}: {found}, not {expected}");
+        }
+        assert_eq!(model.mesh.corner_normals().len(), 3);
+    }
+}
+
+#[test]
 fn buffers_are_read_from_data_and_from_the_folder_of_the_model_only() {
     let house = Triangles::house();
     let expected = good("x.glb", house.glb()).mesh;

@@ -148,6 +148,8 @@ fn obj_normals_belong_to_corners_and_cost_no_face_where_they_are_wrong() {
         ),
         ("f 1//1 2//1\nf 1//2 2//2 3//1\n", vec![tilted, tilted, up]),
         ("f 1//2 2//1 \nf 1//2 2//2 3//1\nl 1 2\n", vec![tilted, tilted, up]),
+        ("f 1//2 2//1\nf 1 2 3\n", vec![]),
+        ("f 1//2 2//1\nf 1 2 3//1\n", vec![none, none, up]),
         ("f 1/1 2/1 3/1\n", vec![]),
     ] {
         let model = good("x.obj", format!("{vertices}{normals}{faces}"));

@@ -111,3 +111,32 @@ fn backs_are_shaded_as_fronts_are() {
     // Light from straight above on a level face is all of it.
     assert_eq!((front, back), ([255; 3], [255; 3]));
 }
+
+#[test]
+fn what_is_turned_away_from_the_light_is_as_dark_as_in_the_shade() {
+    use glam::{DVec3, dvec3};
+    use hiddenline::stages::camera::{Camera, Projection};
+    use hiddenline::stages::shading::light::{Light, LightSource};
+    let eye = dvec3(5.0, -7.0, 4.0);
+    let camera = Camera::new(eye, DVec3::ZERO, DVec3::Z, Projection::Orthographic).unwrap();
+    for source in [
+        LightSource::Shoulder,
+        LightSource::From(dvec3(1.0, 2.0, 3.0)),
+        LightSource::At(dvec3(-3.0, 1.0, 9.0)),
+    ] {
+        let light = Light::new(source, &camera);
+        let at = dvec3(0.5, 0.25, -0.75);
+        let towards = light.towards(at);
+        let across = towards.any_orthonormal_vector();
+        let tone = |angle_deg: f64| {
+            let (sin, cos) = angle_deg.to_radians().sin_cos();
+            light.tone(towards * cos + across * sin, at)
+        };
+        assert!((tone(0.0) - 1.0).abs() < 1e-12);
+        let shade = tone(90.0001);
+        assert!((tone(60.0) - (shade + 1.0) / 2.0).abs() < 1e-5);
+        for angle in [95.0, 120.0, 150.0, 180.0] {
+            assert!((tone(angle) - shade).abs() < 1e-5, "{source:?} at {angle}°");
+        }
+    }
+}

@@ -212,3 +212,60 @@ fn curves_below_zero_are_dashed_and_the_others_are_not() {
     let drawn: f64 = dashes.iter().sum();
     assert!((drawn / whole - 2.0 / 3.0).abs() < 0.02, "{drawn} of {whole}");
 }
+
+/// The labels of a map: the strokes of each, in millimeters, one after the other.
+fn labels_of(output: &SurfaceOutput) -> Vec<(u16, Vec<Vec<DVec2>>)> {
+    let mm = output.page.mm_per_image_unit();
+    let mut labels: Vec<(u16, Vec<Vec<DVec2>>)> = Vec::new();
+    for stroke in output.drawn.drawing.iter().filter(|s| s.kind == StrokeKind::Label) {
+        let points: Vec<DVec2> = stroke.points.iter().map(|p| *p * mm).collect();
+        let level = stroke.part.level;
+        match labels.last_mut() {
+            // Labels of one level are 20 mm apart or more.
+            Some((last, strokes)) if *last == level && strokes[0][0].distance(points[0]) < 12.0 => {
+                strokes.push(points);
+            }
+            _ => labels.push((level, vec![points])),
+        }
+    }
+    labels
+}
+
+#[test]
+fn upright_labels_are_read_from_the_left_or_from_below() {
+    for (text, step) in [("100 - r^2", 2.0), (HILLS, 5.0)] {
+        let output = map(of_formula(text, 81), step, Labels::All, LabelSide::Upright);
+        let mut n_checked = 0;
+        for (level, strokes) in labels_of(&output) {
+            let middle = |points: &[DVec2]| points.iter().sum::<DVec2>() / points.len() as f64;
+            let way = middle(&strokes[strokes.len() - 1]) - middle(&strokes[0]);
+            // One digit has no direction.
+            if way.length() > 1.5 {
+                let is_upright = way.x > -0.1 * way.length() && (way.x > 0.1 || way.y > 0.0);
+                assert!(is_upright, "{text}: level {level} runs along {way}");
+                n_checked += 1;
+            }
+        }
+        assert!(n_checked > 10, "{text}: {n_checked}");
+    }
+}
+
+#[test]
+fn labels_in_dense_maps_cut_the_curves_that_they_cross() {
+    for (text, step) in [("30*sin(x)*cos(y) + 4*x", 0.5), (HILLS, 1.0)] {
+        let output = map(of_formula(text, 61), step, Labels::All, LabelSide::Upright);
+        let mm = output.page.mm_per_image_unit();
+        let mut ink = Ink::default();
+        for stroke in output.drawn.drawing.iter().filter(|s| s.kind != StrokeKind::Label) {
+            segments(stroke.points, mm).into_iter().for_each(|part| ink.push(part));
+        }
+        let labels = labels_of(&output);
+        for part in labels.iter().flat_map(|(_, strokes)| strokes).flat_map(|s| segments(s, 1.0)) {
+            for other in ink.near(0.5 * (part[0] + part[1])) {
+                let gap = distance(part, *other);
+                assert!(gap > 0.2, "{text}: a label is {gap} mm from ink");
+            }
+        }
+        assert!(labels.len() > 10, "{text}: {}", labels.len());
+    }
+}

@@ -288,3 +288,51 @@ fn a_rim_through_samples_lies_on_them() {
     let grid = grid.expect("a grid");
     assert!(grid.rim().count() >= 5 && grid.rim().all(|p| p.x == 2.0));
 }
+
+#[test]
+fn curves_end_at_borders_and_where_others_begin_and_nowhere_else() {
+    let curves = |text: &str, levels: &[f64]| {
+        let mut mesh = LinedMesh::for_levels(levels);
+        mesh.push_grid(&sampled(text, 21), &NO_LINES);
+        mesh.add_levels(levels);
+        mesh.level_curves()
+    };
+    let is_on_border = |p: &DVec3| p.x.abs().max(p.y.abs()) == 5.0;
+    // Straight lines that turn by turn begin at any of the sides.
+    for text in ["x - y/3", "y/3 - x", "y - x/3", "-y - x/3"] {
+        let found = curves(text, &[-1.0, 0.0, 1.5]);
+        assert_eq!(found.len(), 3, "{text}");
+        for curve in found {
+            let ends = [&curve.points[0], &curve.points[curve.points.len() - 1]];
+            assert!(ends.into_iter().all(is_on_border) && ends[0] != ends[1], "{text}");
+        }
+    }
+    for curve in curves("r^2", &[4.0, 9.0]) {
+        assert_eq!(curve.points[0], curve.points[curve.points.len() - 1]);
+        assert!(curve.points.len() > 20);
+    }
+    assert_eq!(curves("r^2", &[4.0, 9.0]).len(), 2);
+    // Four arms meet in a saddle.
+    let arms = curves("x*y", &[0.0]);
+    assert_eq!(arms.len(), 4);
+    for arm in arms {
+        let ends = [arm.points[0], arm.points[arm.points.len() - 1]];
+        let is_saddle = |p: &DVec3| *p == DVec3::ZERO;
+        assert!(ends.iter().any(is_saddle) && ends.iter().any(is_on_border), "{ends:?}");
+        assert!(!arm.points[1..arm.points.len() - 1].iter().any(is_saddle));
+    }
+}
+
+#[test]
+fn sheets_share_a_rim_only_if_all_of_it_is_shared() {
+    let sheet = |text: &str| {
+        let formula = Formula::parse(text, Variables::Plane).expect("a formula");
+        let grid = TrimmedGrid::sample(&formula, None, (-5.0, 5.0), (-5.0, 5.0), (31, 31));
+        grid.expect("a sheet")
+    };
+    let [upper, lower] = ["sqrt(9 - r^2)", "-sqrt(9 - r^2)"].map(sheet);
+    let with_hole = sheet("r < 1 ? nan : -sqrt(9 - r^2)");
+    assert!(upper.shares_rim(&lower, 0.1) && lower.shares_rim(&upper, 0.1));
+    assert!(!upper.shares_rim(&with_hole, 0.1) && !with_hole.shares_rim(&upper, 0.1));
+    assert!(!upper.shares_rim(&sheet("1 - sqrt(9 - r^2)"), 0.1));
+}

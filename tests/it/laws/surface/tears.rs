@@ -102,6 +102,25 @@ fn gaps_between_equal_heights_are_closed() {
 }
 
 #[test]
+fn a_slit_without_heights_stays_open_between_equal_heights() {
+    // Narrower than a cell, so that no sample lies in it.
+    for samples in [20, 30] {
+        let output = drawn("abs(x) < 0.1 ? nan : y/10", samples, &View::top());
+        let (mut n_up_to, mut n_all) = (0, 0);
+        for stroke in map(&output) {
+            for pair in stroke.windows(2) {
+                let [a, b] = [pair[0].x, pair[1].x];
+                let (low, high) = (a.min(b), a.max(b));
+                assert!(low > 0.1 - ON_BORDER || high < ON_BORDER - 0.1, "from {low} to {high}");
+            }
+            n_all += 1;
+            n_up_to += usize::from(stroke.iter().any(|p| (p.x.abs() - 0.1).abs() < ON_BORDER));
+        }
+        assert!(n_up_to >= samples && n_all > n_up_to, "{n_up_to} of {n_all}");
+    }
+}
+
+#[test]
 fn usual_heights_are_drawn_of_what_grows_without_end() {
     for (text, least, most) in [
         ("1/x", 2.0, 6.0),
