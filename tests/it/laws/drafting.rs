@@ -515,3 +515,58 @@ fn the_outline_runs_past_cracks_narrower_than_the_pen_and_into_wider_ones() {
     // The one line that stays of two within half a pen's width.
     assert!((18.0..21.0).contains(&inner), "{inner}");
 }
+
+#[test]
+fn what_lies_before_the_near_plane_is_no_background_to_hide() {
+    // A plate, and a larger one between it and the eye that the near plane takes away.
+    let plate = |low: DVec2, high: DVec2, z: f64| {
+        [low, dvec2(high.x, low.y), high, dvec2(low.x, high.y)].map(|p| p.extend(z))
+    };
+    let seen = plate(DVec2::ZERO, DVec2::splat(20.0), 0.0);
+    let before = plate(dvec2(11.0, -30.0), dvec2(60.0, 50.0), 30.0);
+    let (eye, target) = (dvec3(10.0, 10.0, 50.0), dvec3(10.0, 10.0, 0.0));
+    let lines = LineSelection::NONE.with_outline();
+    let outline = |near: f64| {
+        let projection = Projection::Perspective { fov_deg: 40.0, near };
+        let camera = Camera::new(eye, target, DVec3::Y, projection).unwrap();
+        let options = DrawOptions { lines, pen_width_mm: PEN, ..plain() };
+        // A millimeter on paper to the unit, where the plate is.
+        let scene = scene(&[], &[&seen, &before]);
+        50.0 * ink(&draw(&scene, &camera, &options, 50.0).drawing)
+    };
+    assert!((outline(0.5) - 80.0).abs() < 1e-6, "{}", outline(0.5));
+    assert!(outline(0.01) > 200.0, "{}", outline(0.01));
+}
+
+#[test]
+fn where_lines_are_thinned_the_outline_stays() {
+    // A fold close to the border of a plate: its edge is a silhouette.
+    let plate = [(0, 0), (20, 0), (20, 20), (0, 20)].map(|(x, y)| dvec3(x.into(), y.into(), 0.0));
+    let fold = [
+        dvec3(5.0, 1.0, 2.0),
+        dvec3(19.2, 1.0, 1.5),
+        dvec3(19.2, 19.0, 1.5),
+        dvec3(5.0, 19.0, 2.0),
+        dvec3(5.0, 1.0, 1.0),
+        dvec3(5.0, 19.0, 1.0),
+    ];
+    let mut soup = PolygonSoup::default();
+    soup.positions.extend(plate);
+    soup.positions.extend(fold);
+    soup.push_face(&[0, 1, 2, 3]);
+    soup.push_face(&[4, 5, 6, 7]);
+    soup.push_face(&[5, 8, 9, 6]);
+    let scene = Scene::new(Mesh::new(soup).unwrap().0);
+    let right = |thin_mm: Option<f64>| {
+        let strokes = drawn(&scene, DrawOptions { thin_mm, ..plain() }).drawing;
+        let pairs = strokes.iter().flat_map(|s| s.points.windows(2));
+        let mut lengths = [0.0; 2];
+        for pair in pairs.filter(|p| p[0].x == p[1].x && p[0].x > 19.0) {
+            lengths[usize::from(pair[0].x > 19.9)] += pair[0].distance(pair[1]);
+        }
+        lengths
+    };
+    assert_eq!(right(None), [18.0, 20.0]);
+    let [fold, border] = right(Some(1.2));
+    assert!(fold < 2.0 && (border - 20.0).abs() < 1e-9, "{fold} {border}");
+}

@@ -284,6 +284,32 @@ fn png_is_true_to_scale_on_white() {
 }
 
 #[test]
+fn png_shows_travel_from_the_end_of_a_stroke_to_the_beginning_of_the_next() {
+    let mut lines = Polylines::default();
+    lines.push([dvec2(2.0, 2.0), dvec2(18.0, 2.0)]);
+    lines.push([dvec2(2.0, 8.0), dvec2(18.0, 8.0)]);
+    let pen = Pen { width_mm: 0.5, color: "#000000".into() };
+    let layer = Layer { number: 1, name: "visible".into(), pen, lines, ..Layer::default() };
+    let plot = Plot { width_mm: 20.0, height_mm: 10.0, layers: vec![layer], ..Plot::default() };
+    let mut bytes = Vec::new();
+    let marks = png::Marks { travel: true, order: false };
+    png::write_marked(&plot, Resolution::WidthPx(400), marks, &mut bytes).expect("memory");
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+    let info = reader.next_frame(&mut pixels).expect("PNG");
+    assert_eq!((info.width, info.color_type), (400, ::png::ColorType::Rgb));
+    let is_red = |x: f64, y: f64| {
+        let at = 3 * (400 * (20.0 * y) as usize + (20.0 * x) as usize);
+        pixels[at] > 180 && pixels[at + 1] < 150
+    };
+    for k in 1..8 {
+        let part = f64::from(k) / 8.0;
+        assert!(is_red(18.0 - 16.0 * part, 2.5 + 5.0 * part + (part - 0.5)), "{part}");
+    }
+    assert!(!is_red(2.0, 5.0) && !is_red(18.0, 5.0));
+}
+
+#[test]
 fn a_page_given_in_numbers_is_not_turned() {
     let drawing = drawing(&[&[dvec2(0.0, 0.0), dvec2(4.0, 1.0)]]);
     let paper: Paper = "100x200".parse().expect("a size");

@@ -385,6 +385,80 @@ fn hatching_keeps_off_outlines_of_what_is_nearer_but_not_off_its_own() {
 }
 
 #[test]
+fn margins_are_as_wide_in_perspective() {
+    let square = |from: f64, to: f64, z: f64| {
+        [dvec3(from, from, z), dvec3(to, from, z), dvec3(to, to, z), dvec3(from, to, z)]
+    };
+    let corners = [square(0.0, 10.0, 0.0), square(4.0, 6.0, 3.0)].concat();
+    let scene = Scene::from_faces(&corners, [[0, 1, 2, 3], [4, 5, 6, 7]]).unwrap();
+    let light = LightSource::From(dvec3(-1.0, 0.0, 0.5));
+    for distance in [100.0, 1e4] {
+        // Ten millimeters to the unit of the model.
+        let mm = 10.0 * distance;
+        let projection = Projection::Perspective { fov_deg: 20.0, near: 1e-6 };
+        let eye = dvec3(5.0, 5.0, distance);
+        let camera = Camera::new(eye, eye - DVec3::Z, DVec3::Y, projection).unwrap();
+        let of = |gap_mm: f64| {
+            let shadows = HatchShadows::Own;
+            let options = HatchOptions { light, shadows, gap_mm, ..plain(HatchMethod::Straight) };
+            length(&hatched(&scene, &camera, &options, mm)) / of_all(&scene, &camera, light, mm)
+        };
+        // The tone is even, so the part that is lost is that of the margin.
+        let (side, gap) = (20.0 / (1.0 - 3.0 / distance), 1.5);
+        let expected = (4.0 * side * gap + PI * gap * gap) / (100.0 * 100.0);
+        let lost = of(0.0) - of(gap);
+        assert!((lost / expected - 1.0).abs() < 0.1, "{distance}: {lost}, not {expected}");
+    }
+}
+
+/// The length of all hatching of the largest square alone.
+fn of_all(scene: &Scene, camera: &Camera, light: LightSource, mm: f64) -> f64 {
+    let corners = &scene.mesh().positions()[..4];
+    let alone = Scene::from_faces(corners, [[0, 1, 2, 3]]).unwrap();
+    let shadows = HatchShadows::Own;
+    let options = HatchOptions { light, shadows, ..plain(HatchMethod::Straight) };
+    length(&hatched(&alone, camera, &options, mm))
+}
+
+#[test]
+fn a_face_seen_at_a_flat_angle_is_hatched_up_to_its_own_outline() {
+    let scene = square();
+    let light = LightSource::From(dvec3(-1.0, 0.3, 0.2));
+    for forward in [dvec3(0.0, 1.0, -0.15), dvec3(0.8, 0.5, -0.1), dvec3(-0.3, -1.0, -0.2)] {
+        let of = |gap_mm: f64| {
+            let options = HatchOptions {
+                light,
+                shadows: HatchShadows::Own,
+                gap_mm,
+                ..plain(HatchMethod::Straight)
+            };
+            length(&hatched(&scene, &along(forward), &options, 150.0))
+        };
+        assert!(of(0.0) > 0.0);
+        assert_eq!(of(0.5), of(0.0), "{forward}");
+    }
+}
+
+#[test]
+fn steps_of_tone_are_the_nearest_ones() {
+    let scene = square();
+    let camera = along(DVec3::NEG_Z);
+    let low = camera.image(DVec3::ZERO);
+    // Steps that halving can make: quarters, halves and the whole.
+    let cases = [(2, 0.1), (2, 0.4), (2, 0.6), (2, 0.7), (2, 0.9), (4, 0.05), (4, 0.45), (4, 0.7)];
+    for (n, cosine) in cases {
+        let sine = (1.0_f64 - cosine * cosine).sqrt();
+        let light = LightSource::From(dvec3(-sine, 0.0, cosine));
+        let levels = HatchLevels::Steps(n);
+        let options = HatchOptions { light, levels, ..plain(HatchMethod::Straight) };
+        let n = f64::from(n);
+        let expected = options.black * ((1.0 - cosine) * n).round() / n;
+        let got = covered(&hatched(&scene, &camera, &options, 24.0), 24.0, low);
+        assert!((got - expected).abs() < 0.04, "{n} {cosine}: {got}, not {expected}");
+    }
+}
+
+#[test]
 fn hatching_goes_up_to_a_face_that_goes_on_beside_it() {
     let square = |from: f64, to: f64, z: f64| {
         [dvec3(from, 0.0, z), dvec3(to, 0.0, z), dvec3(to, 4.0, z), dvec3(from, 4.0, z)]
