@@ -15,7 +15,15 @@
 //! (1980); lecture notes on visibility (Slovak), section 3.2, and those on the painter's algorithm
 //! with a BSP tree. Their rule for choosing a face maximizes a sum in which split faces count in its
 //! favor; here they count against it. For large sets, planes across an axis are candidates too, since
-//! faces alone would turn any convex body into a list of n nodes, with n² tests.
+//! faces alone would turn any convex body into a list of n nodes, with n² tests. What rules make of the
+//! models in `examples/models`, where `hiddenline fill MODEL --engine bsp --stats` counts this one:
+//!
+//! | plane of each node | fragments of spot | tests | fragments of benchy_wheel | tests |
+//! |---|---|---|---|---|
+//! | this rule | 12,467 | 1,273,928 | 3,612 | 365,548 |
+//! | this rule, faces only | 11,909 | 1,498,203 | 4,252 | 476,579 |
+//! | a random face | 20,177 | 497,020 | 8,555 | 177,085 |
+//! | the first face | 22,274 | 681,626 | 27,340 | 302,577 |
 //!
 //! Good for: many views of one model, such as a turntable. The walk costs one exact test per node.
 //! Cannot: avoid splits that a view does not need, or handle large faces that all cross: they make n²

@@ -140,3 +140,25 @@ fn what_is_turned_away_from_the_light_is_as_dark_as_in_the_shade() {
         }
     }
 }
+
+#[test]
+fn faces_in_one_plane_cast_no_shadows_on_each_other() {
+    // Exactly in one plane; the points that are shaded are so but for rounding.
+    let at = |x: f64, y: f64| [x, y, x / 2.0 + y / 4.0];
+    let square = |low: f64, high: f64| [at(low, low), at(high, low), at(high, high), at(low, high)];
+    for show in [Show::Tone, Show::Shaded] {
+        let [alone, covered] = [false, true].map(|is_covered| {
+            let mut model = Model::default();
+            model.face(&square(0.0, 9.0));
+            if is_covered {
+                model.face(&square(1.5, 7.25));
+                model.face(&[at(0.5, 0.5), at(8.0, 1.0), at(3.0, 8.5)]);
+            }
+            picture(model, show)
+        });
+        for (i, j) in (1..39).flat_map(|i| (1..39).map(move |j| (i, j))) {
+            let [x, y] = [i, j].map(|k| (f64::from(k) + 0.5) / 40.0);
+            assert_eq!(covered(x, y), alone(x, y), "{x}, {y}");
+        }
+    }
+}
