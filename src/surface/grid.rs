@@ -313,6 +313,14 @@ impl Grid {
         (low <= high).then_some((low, high))
     }
 
+    /// The (lowest, highest) corner of the box around the surface; of height 0 if all samples are holes.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let (low, high) = self.heights().unwrap_or((0.0, 0.0));
+        let (nx, ny) = (self.xs.len(), self.ys.len());
+        let first = DVec3::new(self.xs[0], self.ys[0], low);
+        (first, DVec3::new(self.xs[nx - 1], self.ys[ny - 1], high))
+    }
+
     /// Multiplies all heights. O(samples).
     pub fn scale_heights(&mut self, factor: f64) {
         self.zs.iter_mut().for_each(|z| *z *= factor);

@@ -26,7 +26,7 @@ use rayon::prelude::*;
 
 use super::HorizonError;
 use super::cells::{First, GridPart};
-use super::max_min::{bounds, parts};
+use super::max_min::parts;
 use super::pieces::{GridPieces, HIDDEN, UPPER};
 use super::plan_predicates::PlanSight;
 use super::segment::HorizonPlane;
@@ -65,7 +65,7 @@ pub fn solve(grid: &Grid, camera: &Camera, family: Family) -> Result<GridPieces,
         return Ok(GridPieces::join(nx, ny, status, Vec::new()));
     }
     let status: Vec<AtomicU8> = (0..n_x_edges + n_y_edges).map(|_| AtomicU8::new(HIDDEN)).collect();
-    let (low, high) = bounds(grid);
+    let (low, high) = grid.bounds();
     let center = if perspective { camera.eye() } else { low + 0.5 * (high - low) };
     let size = (high - center).abs().max((low - center).abs());
     let done: Vec<_> = parts(grid, camera)

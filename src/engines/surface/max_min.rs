@@ -79,7 +79,7 @@ pub fn is_clear_of_near_plane(grid: &Grid, camera: &Camera) -> bool {
     };
     let near = near * camera.forward().length_squared();
     let depth = |p: DVec3| (p - camera.eye()).dot(camera.forward());
-    let (low, high) = bounds(grid);
+    let (low, high) = grid.bounds();
     let corner =
         |k: u8| DVec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low);
     if (0..8).all(|k| depth(corner(k)) >= near) {
@@ -207,12 +207,6 @@ fn sweep(
     let (done, parts): (Vec<_>, Vec<_>) = done.into_iter().unzip();
     let parts = joined(wires.len(), parts.concat());
     Ok((GridPieces::of_strips(nx, ny, status, done), parts))
-}
-
-pub(super) fn bounds(grid: &Grid) -> (DVec3, DVec3) {
-    let (xs, ys) = (grid.xs(), grid.ys());
-    let (low, high) = grid.heights().unwrap_or((0.0, 0.0));
-    (DVec3::new(xs[0], ys[0], low), DVec3::new(xs[xs.len() - 1], ys[ys.len() - 1], high))
 }
 
 /// Which horizons are needed, (upper, lower). With the eye over the domain, one of them starts at infinity:

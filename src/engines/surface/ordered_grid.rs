@@ -9,7 +9,6 @@ use std::ops::Range;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::max_min;
 use super::plan_predicates::PlanSight;
 use super::plan_triangle::{Facing, PlanTriangle, Side, facing, signs};
 use super::segment::Samples;
@@ -44,7 +43,7 @@ impl<'a> OrderedGrid<'a> {
     /// `None` where a mesh engine is needed: if rounding turned a triangle over or made them a cycle,
     /// with the eye over a cell that is cut, or where the near plane cuts one.
     pub fn new(cut: CutGrid<'a>, camera: &Camera) -> Option<Self> {
-        let (low, high) = max_min::bounds(cut.grid);
+        let (low, high) = cut.grid.bounds();
         let is_perspective = matches!(camera.projection(), Projection::Perspective { .. });
         let center = if is_perspective { camera.eye() } else { low + 0.5 * (high - low) };
         let (sx, sy) = signs(camera);
@@ -115,7 +114,7 @@ impl<'a> OrderedGrid<'a> {
     /// The (lowest, highest) corner of the box around all vertices.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
         let points = self.cut.cuts.points().iter();
-        points.fold(max_min::bounds(self.cut.grid), |(low, high), p| (low.min(*p), high.max(*p)))
+        points.fold(self.cut.grid.bounds(), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 
     /// The triangles of a cell from the eye outward, if it is cut.

@@ -91,7 +91,7 @@ fn triangles_over_a_convex_domain_are_drawn_by_horizons() {
     for (arguments, expected) in [
         (&["-x^2", "--samples", "9", "--lines", "x,levels"][..], &["grid", "level"][..]),
         (&["x*y", "--samples", "9", "--lines", "border"], &["boundary"]),
-        (&["x*y", "--samples", "9", "--where", "r < 4"], &["boundary", "grid"]),
+        (&["x*y", "--samples", "9", "--where", "r < 4", "--lines", "both"], &["boundary", "grid"]),
         (&["--points", "heights"], &["mesh"]),
     ] {
         let (strokes, engine) = drawn(&folder, arguments);
@@ -194,7 +194,7 @@ fn axes_have_ticks_and_letters_outside_of_the_surface() {
         (vec!["axis", "grid", "level", "text", "title"], "max-min")
     );
     let (strokes, engine) = drawn(&folder, &["sin(x)*y", "--title", "A title"]);
-    let expected = vec!["axis", "grid", "text", "title"];
+    let expected = vec!["axis", "grid", "silhouette", "text", "title"];
     assert_eq!((kinds(&strokes), engine.as_str()), (expected, "max-min"));
     let of = |kind: &str| strokes.iter().filter(|s| s["kind"] == kind).count();
     // Three axes with about seven ticks each, and four or so between two of them.
