@@ -519,3 +519,14 @@ fn logarithmic_axes_are_enclosed_in_their_own_coordinates() {
         }
     }
 }
+
+#[test]
+fn a_branch_without_values_does_not_widen_those_of_the_other() {
+    let range = Interval::new(-1.0, 1.0);
+    for text in ["x > 0 ? nan : 2 + x", "x > 0 ? 2 + x : nan"] {
+        let jet = parsed(text).jets().over(range, range, [1.0, 0.0], &mut Vec::new());
+        let Interval { low, high } = jet.value;
+        assert!(low <= 1.0 && high >= 3.0 && low > 0.9 && high < 3.1, "{text}: {low} to {high}");
+        assert_eq!(jet.class, Class::Partial, "{text}");
+    }
+}

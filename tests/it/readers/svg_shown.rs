@@ -411,6 +411,21 @@ fn skewing_by_css_turns_the_axis_that_it_names() {
 }
 
 #[test]
+fn a_stated_length_of_a_path_stretches_dashes_and_their_offset() {
+    // Twenty pixels stand for a hundred.
+    let file = shown(
+        "<path pathLength='100' stroke-dasharray='20 30' stroke-dashoffset='-10' d='M0 5h20'/>",
+    );
+    let found: Vec<[f64; 2]> =
+        strokes(&file).iter().map(|dash| [dash[0].x, dash[dash.len() - 1].x]).collect();
+    let expected = [[2.0, 6.0], [12.0, 16.0]];
+    assert_eq!(found.len(), 2, "{found:?}");
+    for (dash, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+        assert!((dash - expected).abs() < 1e-9, "{found:?}");
+    }
+}
+
+#[test]
 fn dashes_that_keep_their_size_keep_their_offset() {
     let file = shown(
         "<g transform='scale(2)'><path vector-effect='non-scaling-stroke' stroke-dasharray='10 10' \

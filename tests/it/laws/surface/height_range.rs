@@ -169,3 +169,20 @@ fn a_range_without_heights_is_refused_with_those_there_are() {
         assert!(low.abs() < 1e-9 && (high - 8.0).abs() < 1e-9, "{low} {high}");
     }
 }
+
+#[test]
+fn the_box_has_the_values_of_the_axes_whatever_they_are_drawn_at() {
+    let surface = Surface::formula("x + 2*y").expect("a formula").x(1.0, 3.0).y(10.0, 60.0);
+    for surface in [surface.clone().aspect(Aspect::Data).z_scale(5.0), surface] {
+        let sampled = surface.samples(5, 7).sample().expect("samples");
+        assert_ne!(axes_box(&sampled).high.z, 123.0, "drawn as it is");
+        for ((low, high), expected) in
+            axes_box(&sampled).ranges.into_iter().zip([(1.0, 3.0), (10.0, 60.0), (21.0, 123.0)])
+        {
+            assert!(
+                (low - expected.0).abs() < 1e-9 && (high - expected.1).abs() < 1e-9,
+                "{low} to {high}"
+            );
+        }
+    }
+}
