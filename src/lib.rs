@@ -68,7 +68,7 @@
 //! use hiddenline::{Paper, Surface, SurfaceLines, View};
 //!
 //! let hat = Surface::formula("sinc(r)")?.x(-12.0, 12.0).y(-12.0, 12.0);
-//! let drawing = hat.draw(&View::from_angles(-60.0, 28.0), &SurfaceLines::default().silhouette());
+//! let drawing = hat.draw(&View::from_angles(-60.0, 28.0), &SurfaceLines::default());
 //! # if false {
 //! drawing.on(Paper::A4)?.optimized().save("hat.svg")?;
 //! # }
