@@ -26,6 +26,8 @@ mod points;
 mod proportions;
 mod root;
 mod sampled;
+mod sampled_mesh;
+mod sampling;
 mod sampling_error;
 mod sheet_jets;
 mod source;

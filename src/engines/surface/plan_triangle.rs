@@ -10,12 +10,13 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
 use super::plan_predicates::PlanSight;
 use super::segment::{HorizonVertex, Samples};
 use super::strip::HorizonStrip;
 use crate::camera::Camera;
 use crate::predicates::{Sign, orient2d};
-use glam::DVec3;
 
 /// Where the eye is relative to a side of a triangle, in plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
