@@ -9,7 +9,7 @@
 //! ```
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHashSet;
 
 use super::Grid;
 use super::fold_cuts::SheetFolds;
@@ -117,30 +117,28 @@ pub(super) fn grid_folds(grid: &Grid, folds: &[SheetFolds], view: &FoldView) -> 
     let [of_grid] = folds else { return GridCuts::NONE };
     let facing = Facing::new(grid, view);
     let mut band = facing.mixed(grid);
-    let mut is_in_band: FxHashMap<u32, bool> = band.iter().map(|vertex| (*vertex, true)).collect();
-    let mut room = Vec::new();
-    let mut next = 0;
-    while let Some(&vertex) = band.get(next) {
-        next += 1;
-        for cell in facing.around(grid, vertex) {
-            let of_cell = facing.is_front[cell as usize];
-            for (corners, is_front) in triangles(grid, cell).into_iter().zip(of_cell) {
-                if !corners.contains(&vertex) {
-                    continue;
-                }
-                for corner in corners {
-                    is_in_band.entry(corner).or_insert_with(|| {
-                        let place = grid.point(corner).truncate();
-                        let at = of_grid.function.at(place, &mut room).facing;
-                        let is_other = if is_front { at < 0.0 } else { at >= 0.0 };
-                        if is_other {
-                            band.push(corner);
-                        }
-                        is_other
-                    });
+    let mut is_known: FxHashSet<u32> = band.iter().copied().collect();
+    let mut n_done = 0;
+    while n_done < band.len() {
+        // Neighbors of the newest part of the band, with the facing of a triangle beside them.
+        let mut beside: Vec<(u32, bool)> = Vec::new();
+        for &vertex in &band[n_done..] {
+            for cell in facing.around(grid, vertex) {
+                let of_cell = triangles(grid, cell).into_iter().zip(facing.is_front[cell as usize]);
+                let of_vertex = of_cell.filter(|(corners, _)| corners.contains(&vertex));
+                for (corners, is_front) in of_vertex {
+                    let new = corners.into_iter().filter(|corner| is_known.insert(*corner));
+                    beside.extend(new.map(|corner| (corner, is_front)));
                 }
             }
         }
+        n_done = band.len();
+        let is_other = |room: &mut Vec<_>, &(corner, is_front): &(u32, bool)| {
+            let at = of_grid.function.at(grid.point(corner).truncate(), room).facing;
+            (if is_front { at < 0.0 } else { at >= 0.0 }).then_some(corner)
+        };
+        let others = beside.par_iter().with_min_len(64).map_init(Vec::new, is_other);
+        band.extend(others.flatten_iter().collect::<Vec<u32>>());
     }
     let mut cells: Vec<u32> = band.iter().flat_map(|vertex| facing.around(grid, *vertex)).collect();
     cells.par_sort_unstable();
