@@ -407,3 +407,40 @@ fn for_parts(fine: &Level, coarse: &Level, mut f: impl FnMut(u32, [Option<u32>; 
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Covers, Patch, Placed, Rounding, Square};
+    use crate::camera::{Camera, Projection};
+    use crate::classify::{LineSelection, ViewedScene};
+    use crate::engines::edge::rounding::Place;
+    use crate::model::mesh::{Mesh, PolygonSoup};
+    use crate::model::scene::Scene;
+    use glam::{DVec3, dvec2, dvec3};
+
+    #[test]
+    fn a_cell_nearer_to_an_open_side_than_the_image_is_exact_is_not_covered() {
+        let mut soup = PolygonSoup::default();
+        soup.positions = vec![dvec3(-1.0, -3.0, 0.0), dvec3(5.0, 0.0, 0.0), dvec3(-1.0, 3.0, 0.0)];
+        soup.push_face(&[0, 1, 2]);
+        let scene = Mesh::new(soup).map(|(mesh, _)| Scene::new(mesh)).unwrap_or_default();
+        let eye = dvec3(0.0, 0.0, 7.0);
+        let projection = Projection::Perspective { fov_deg: 40.0, near: 1e-6 };
+        let camera = Camera::new(eye, DVec3::ZERO, DVec3::Y, projection).expect("a camera");
+        let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
+        let rounding = Rounding::new(&view);
+        let Place::Triangle(bounds, image) = rounding.place(&view, 0) else { panic!("not placed") };
+        let placed = Placed { item: 0, level: 1, bounds, image, finer: 0 };
+        let covers = Covers::new(&view, rounding, &[vec![placed]], 0.0);
+        let side = image.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+        let error = rounding.image_error(dvec2(side.abs(), 0.2).element_sum());
+        let covered = |inside: f64| {
+            let low = dvec2(side + inside, -0.1);
+            matches!(covers.patch_over(&Square { low, high: low + 0.2 }, 0), Patch::Whole(_))
+        };
+        assert!(covered(1e-3), "a cell well inside");
+        assert!(!covered(-1e-3), "a cell across the side");
+        // The side itself and the cell may each be off by so much.
+        assert!(side + error > side && !covered(error) && !covered(2.0 * error));
+    }
+}
