@@ -200,3 +200,57 @@ impl Grid {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat3, DVec3, dvec3};
+
+    /// Numbers between -1 and 1.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut state = 5_u64;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1 << 30) - 1.0
+        }
+    }
+
+    #[test]
+    fn cells_are_covered_when_their_middle_is_in_front_of_the_near_plane_in_a_triangle() {
+        let mut next = numbers();
+        let grid = Grid { low: dvec2(-1.3, -1.1), cell: 0.1, columns: 27, rows: 23 };
+        let (mut n_covered, mut n_cut) = (0, 0);
+        for _ in 0..400 {
+            let near = 0.7;
+            let corners: [ImagePoint; 3] = std::array::from_fn(|_| {
+                let depth = 1.3 + next();
+                ImagePoint { x: 2.0 * next(), y: 2.0 * next(), w: depth, depth }
+            });
+            n_cut += usize::from(corners.iter().any(|p| p.depth < near));
+            let mut tiles = Tiles::new(grid.columns, grid.rows);
+            tiles.add([13, 11], 30);
+            tiles.number();
+            let bits: Vec<AtomicU64> = tiles.take_bits().into_iter().map(AtomicU64::new).collect();
+            grid.fill(corners, near, &tiles, &bits);
+            tiles.set_bits(bits.into_iter().map(AtomicU64::into_inner).collect());
+            // The sight line through the middle of a cell is a sum of the corners.
+            let sum = DMat3::from_cols_array_2d(&corners.map(|p| [p.x, p.y, p.w])).inverse();
+            let depths = DVec3::from(corners.map(|p| p.depth));
+            for (column, row) in
+                (0..grid.columns).flat_map(|column| (0..grid.rows).map(move |row| (column, row)))
+            {
+                let middle = grid.low + grid.cell * (dvec2(column as f64, row as f64) + 0.5);
+                let weights = sum * dvec3(middle.x, middle.y, 1.0);
+                let in_front = weights.dot(depths) / weights.element_sum() - near;
+                let doubt = 1e-9 * weights.abs().element_sum();
+                if weights.abs().min_element() < doubt || in_front.abs() < 1e-9 {
+                    continue;
+                }
+                let is_covered = weights.min_element() > 0.0 && in_front > 0.0;
+                assert_eq!(tiles.has([column, row]), is_covered, "{corners:?} {column} {row}");
+                n_covered += usize::from(is_covered);
+            }
+        }
+        assert!(n_covered > 10_000 && n_cut > 100, "{n_covered} {n_cut}");
+    }
+}
