@@ -107,7 +107,7 @@ impl ImageIndex {
         back_faces: &BackFaces,
     ) -> Self {
         let rounding = Rounding::new(view);
-        let place = |triangle| match back_faces.holds(triangle) {
+        let place = |triangle| match back_faces.leaves_out(triangle) {
             true => Place::Nowhere,
             false => rounding.place(view, triangle),
         };

@@ -131,7 +131,8 @@ fn run(
                         visibility.push(&[hidden(segment)]);
                     }
                     Some(segment) => {
-                        let spans = clipper.clip(view, options, segment, index, asked, &mut counts);
+                        let spans =
+                            clipper.clip(view, options, segment, shortcuts, asked, &mut counts);
                         visibility.push(spans);
                     }
                     None => visibility.push(&[]),
@@ -162,11 +163,13 @@ fn hidden(segment: &Segment) -> Span {
 struct Clipper {
     sweep: Sweep,
     visitor: Visitor,
+    /// Back faces to be tested if the segment is in contact with a front face.
+    waiting: Vec<u32>,
 }
 
 impl Clipper {
     fn new(index: Option<&ImageIndex>) -> Self {
-        Self { sweep: Sweep::default(), visitor: Visitor::new(index) }
+        Self { sweep: Sweep::default(), visitor: Visitor::new(index), waiting: Vec::new() }
     }
 
     fn clip(
@@ -174,22 +177,42 @@ impl Clipper {
         view: &ViewedScene,
         options: &VisibilityOptions,
         segment: &Segment,
-        index: Option<&ImageIndex>,
+        shortcuts: Option<(&ImageIndex, &BackFaces)>,
         asked: Asked,
         counts: &mut LineCounts,
     ) -> &[Span] {
-        let sweep = &mut self.sweep;
+        let Self { sweep, visitor, waiting } = self;
         sweep.clear();
-        let mut test = |triangle| {
+        waiting.clear();
+        let mut is_in_contact = false;
+        let mut test = |triangle, sweep: &mut Sweep| {
             counts.candidate_pairs += 1;
-            clip_by(view, options, segment, triangle, sweep)
+            let effect = clip_by(view, options, segment, triangle, sweep);
+            is_in_contact |= effect == Effect::InContact;
+            effect == Effect::HidesAll
         };
-        let wholly_hidden = match index {
-            Some(index) => {
-                index.hides(segment) || self.visitor.any(index, view, segment, &mut test)
+        let mut wholly_hidden = match shortcuts {
+            Some((index, back_faces)) => {
+                let test = |triangle| {
+                    if back_faces.holds(triangle) {
+                        waiting.push(triangle);
+                        false
+                    } else {
+                        test(triangle, sweep)
+                    }
+                };
+                index.hides(segment) || visitor.any(index, view, segment, test)
             }
-            None => (0..view.scene().triangles().len() as u32).any(test),
+            None => {
+                (0..view.scene().triangles().len() as u32).any(|triangle| test(triangle, sweep))
+            }
         };
+        if is_in_contact && !wholly_hidden {
+            wholly_hidden = waiting.iter().any(|&triangle| {
+                counts.candidate_pairs += 1;
+                clip_by(view, options, segment, triangle, sweep) == Effect::HidesAll
+            });
+        }
         if wholly_hidden {
             return sweep.only(hidden(segment));
         }
@@ -202,18 +225,29 @@ impl Clipper {
     }
 }
 
-/// Adds the effect of one triangle on a segment; true when it hides all of the segment and layers
-/// are not counted.
+/// What one triangle did to a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Effect {
+    /// It hides all of it, and layers are not counted.
+    HidesAll,
+    /// It would hide some, but is in contact with it.
+    InContact,
+    /// Any other, in the sweep.
+    Added,
+}
+
+/// Adds the effect of one triangle on a segment.
 fn clip_by(
     view: &ViewedScene,
     options: &VisibilityOptions,
     segment: &Segment,
     triangle: u32,
     sweep: &mut Sweep,
-) -> bool {
+) -> Effect {
     let (cover, border) =
         match shadow(view, segment, triangle, options.contact_tolerance, options.find_doubled) {
-            None => return false,
+            None => return Effect::Added,
+            Some(Shadow::InContact) => return Effect::InContact,
             Some(Shadow::Covers(cover)) => (Some(cover), None),
             Some(Shadow::AlongBorder(cover, border)) => (Some(cover), Some((cover, border, false))),
             Some(Shadow::OnBorder(cover, border)) => (None, Some((cover, border, true))),
@@ -226,15 +260,15 @@ fn clip_by(
     {
         sweep.add_doubled(&cover);
     }
-    let Some(cover) = cover else { return false };
+    let Some(cover) = cover else { return Effect::Added };
     let is_whole = |plane| plane == CutPlane::End || plane == CutPlane::Near;
     if !options.count_layers
         && cover.sides == Sides::Both
         && is_whole(cover.from.plane)
         && is_whole(cover.to.plane)
     {
-        return true;
+        return Effect::HidesAll;
     }
     sweep.add_cover(&cover);
-    false
+    Effect::Added
 }

@@ -61,6 +61,8 @@ pub(super) enum Shadow {
     /// It lies in the segment's plane of sight and own plane: its border edge between two vertices
     /// has the same image and the same depth over a part.
     OnBorder(Cover, [u32; 2]),
+    /// It would cover a part, but the segment lies in near contact with it.
+    InContact,
 }
 
 /// The part of the parameter's range that is left between the cuts made so far.
@@ -147,7 +149,7 @@ pub(super) fn shadow(
         return border.map(|border| Shadow::OnBorder(cover, border));
     }
     if contact_tolerance > 0.0 && sight.in_contact(corners, ends, contact_tolerance) {
-        return None;
+        return Some(Shadow::InContact);
     }
     Some(match border {
         Some(border) if find_doubled => Shadow::AlongBorder(cover, border),

@@ -51,7 +51,10 @@ fn checked(name: &str, scene: &Scene, camera: &Camera, options: &VisibilityOptio
     let view = ViewedScene::new(scene, camera, every, 30.0);
     let (expected, _, _) = solve(&view, LineEngine::AllPairs, options);
     let (found, counts, _) = solve(&view, LineEngine::Roberts, options);
-    assert_same(name, &expected, &found, |qi| qi);
+    // Where lines are hidden, nobody asks whether others coincide with them.
+    assert_same(name, &expected, &found, |span| {
+        if span.qi == 0 && span.doubled { u32::MAX } else { span.qi }
+    });
     counts
 }
 
@@ -80,14 +83,21 @@ fn back_faces_of_closed_bodies_are_not_tested() {
     let ahead = looking(dvec3(0.0, -7.0, 0.0), Projection::Orthographic);
     assert_eq!(counted(&cube, &ahead, &VISIBLE_ONLY), [2, 0]);
 
-    let options = [
-        VisibilityOptions { count_layers: true, ..VISIBLE_ONLY },
-        VisibilityOptions { find_doubled: true, ..VISIBLE_ONLY },
-        VisibilityOptions { contact_tolerance: 1e-9, ..VISIBLE_ONLY },
-    ];
-    for options in options {
-        assert_eq!(counted(&cube, &aside, &options), [0, 0], "{options:?}");
-    }
+    let layers = VisibilityOptions { count_layers: true, ..VISIBLE_ONLY };
+    assert_eq!(counted(&cube, &aside, &layers), [0, 0]);
+    // A back face beside an edge-on one tells alone that its border is nearer than others.
+    let doubled = VisibilityOptions { find_doubled: true, ..VISIBLE_ONLY };
+    assert_eq!(counted(&cube, &aside, &doubled), [6, 3]);
+    assert_eq!(counted(&cube, &ahead, &doubled), [0, 0]);
+    // Edges in contact with a front face ask the back faces, so none is left out unseen.
+    let contact = VisibilityOptions { contact_tolerance: 1e-9, ..VISIBLE_ONLY };
+    assert_eq!(counted(&cube, &aside, &contact), [6, 0]);
+    // Where bodies are not looked for, all faces are tested.
+    let mut soup = PolygonSoup::default();
+    add(&mut soup, &points, &BOX);
+    let shell = Scene::new(Mesh::new(soup).unwrap().0);
+    let [all, saved] = [&shell, &cube].map(|s| checked("", s, &aside, &contact).candidate_pairs);
+    assert!(4 * saved <= 3 * all, "{saved} of {all} pairs");
     // From inside, the near plane cuts the body.
     let inside = Camera::new(DVec3::ZERO, dvec3(0.3, 1.0, 0.2), DVec3::Z, PERSPECTIVE).unwrap();
     assert_eq!(counted(&cube, &inside, &VISIBLE_ONLY), [0, 0]);
@@ -219,7 +229,7 @@ fn add_spindle(soup: &mut PolygonSoup, rng: &mut Rng, scale: f64, offset: DVec3)
 
 #[test]
 fn what_is_left_out_changes_nothing() {
-    let (mut n_left_out, n_scenes) = (0, number_of_scenes(600));
+    let (mut n_left_out, mut n_waiting, n_scenes) = (0, 0, number_of_scenes(600));
     for seed in 0..n_scenes {
         let mut rng = Rng(seed);
         // Small integers coincide often; other numbers never do.
@@ -237,11 +247,19 @@ fn what_is_left_out_changes_nothing() {
         let scene = scene(soup);
         let from = dvec3(rng.integer(-9, 9), -rng.integer(5, 30), rng.integer(-9, 9));
         let camera = looking(from, rng.pick(&[Projection::Orthographic, PERSPECTIVE]));
-        let counts = checked(&format!("seed {seed}"), &scene, &camera, &VISIBLE_ONLY);
+        let name = format!("seed {seed}");
+        let counts = checked(&name, &scene, &camera, &VISIBLE_ONLY);
         n_left_out += u64::from(counts.back_edges > 0);
+        let options = VisibilityOptions {
+            contact_tolerance: scale * rng.pick(&[0.0, 1e-9, 0.3, 1.0, 2.5]),
+            find_doubled: rng.one_in(2),
+            ..VISIBLE_ONLY
+        };
+        let counts = checked(&format!("{name}, {options:?}"), &scene, &camera, &options);
+        n_waiting += u64::from(counts.back_faces > 0);
     }
-    eprintln!("edges left out in {n_left_out} of {n_scenes} scenes");
-    assert!(n_left_out > n_scenes / 4);
+    eprintln!("edges left out in {n_left_out}, faces in {n_waiting} of {n_scenes} scenes");
+    assert!(n_left_out > n_scenes / 4 && n_waiting > n_scenes / 4);
 }
 
 #[test]

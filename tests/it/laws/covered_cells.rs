@@ -8,7 +8,7 @@ use glam::{DVec3, dvec3};
 use hiddenline::stages::camera::{Camera, DEFAULT_NEAR, Projection};
 use hiddenline::stages::classify::{LineSelection, ViewedScene};
 use hiddenline::stages::engines::edge::{LineEngine, VisibilityOptions, solve};
-use hiddenline::stages::engines::visibility::Visibility;
+use hiddenline::stages::engines::visibility::{Span, Visibility};
 use hiddenline::stages::model::mesh::{Mesh, PolygonSoup};
 use hiddenline::stages::model::scene::Scene;
 
@@ -160,7 +160,7 @@ pub(crate) fn assert_same(
     name: &str,
     expected: &Visibility,
     found: &Visibility,
-    told: impl Fn(u32) -> u32,
+    state: impl Fn(&Span) -> u32,
 ) {
     assert_eq!(expected.len(), found.len(), "{name}");
     for i in 0..found.len() {
@@ -168,8 +168,8 @@ pub(crate) fn assert_same(
             let mut parts: Vec<(u32, f64, f64)> = Vec::new();
             for span in visibility.spans(i).iter().filter(|span| span.t1 - span.t0 > 1e-9) {
                 match parts.last_mut() {
-                    Some(last) if last.0 == told(span.qi) => last.2 = span.t1,
-                    _ => parts.push((told(span.qi), span.t0, span.t1)),
+                    Some(last) if last.0 == state(span) => last.2 = span.t1,
+                    _ => parts.push((state(span), span.t0, span.t1)),
                 }
             }
             parts
@@ -207,12 +207,12 @@ fn nothing_that_shows_is_left_out_behind_walls() {
             let name = format!("seed {seed}, tolerance {contact_tolerance}");
             let (expected, _, _) = solve(&view, LineEngine::AllPairs, &counted);
             let (found, all, _) = solve(&view, LineEngine::Roberts, &counted);
-            assert_same(&name, &expected, &found, |qi| qi);
+            assert_same(&name, &expected, &found, |span| span.qi);
             let (found, kept, _) = solve(&view, LineEngine::Roberts, &settings);
-            assert_same(&name, &expected, &found, |qi| qi.min(1));
+            assert_same(&name, &expected, &found, |span| span.qi.min(1));
             let (found, _, _) = solve(&few, LineEngine::Roberts, &settings);
             let (expected, _, _) = solve(&few, LineEngine::AllPairs, &settings);
-            assert_same(&format!("{name}, few edges"), &expected, &found, |qi| qi);
+            assert_same(&format!("{name}, few edges"), &expected, &found, |span| span.qi);
             n_thinned += u64::from(2 * kept.candidate_pairs < all.candidate_pairs);
         }
     }
@@ -237,7 +237,7 @@ fn what_lies_far_out_is_not_behind_a_wall_in_a_border_cell() {
     let view = ViewedScene::new(&scene, &camera, LineSelection::all_edges(), 30.0);
     let (expected, _, _) = solve(&view, LineEngine::AllPairs, &VISIBLE_ONLY);
     let (found, _, _) = solve(&view, LineEngine::Roberts, &VISIBLE_ONLY);
-    assert_same("far out", &expected, &found, |qi| qi);
+    assert_same("far out", &expected, &found, |span| span.qi);
     let n_hidden = (0..found.len()).filter(|&i| found.spans(i)[0].qi > 0).count();
     assert_eq!(n_hidden, 4);
 }
