@@ -32,6 +32,10 @@ const GROWTH: f64 = 1.1;
 /// Heights that differ by less than this part of the range of heights are the same.
 const SAME_HEIGHT: f64 = 1e-6;
 
+/// A rim that passes a sample this close, as a part of an edge, runs through it: several points of the rim
+/// beside one another would differ by little more than their rounding, which makes dents in the rim.
+const AT_SAMPLE: f64 = 1e-6;
+
 /// A grid over a domain with a smooth rim: the border of the domain is found by bisection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrimmedGrid {
@@ -109,7 +113,9 @@ impl TrimmedGrid {
             .flat_map_iter(|j| leaving_edges(&grid, j))
             .map(|edge| (edge, last_inside(&grid, function, domain, edge)))
             .collect();
-        Ok(Self { grid, rim, has_poles: false, heights: None })
+        let mut trimmed = Self { grid, rim, has_poles: false, heights: None };
+        trimmed.move_rim_to_samples();
+        Ok(trimmed)
     }
 
     /// Samples `function` on given lines where it has a value, torn open where it jumps.
@@ -159,7 +165,57 @@ impl TrimmedGrid {
             end.z.abs() > GROWTH * z.abs() && (end.z - z).abs() > closes
         };
         let has_poles = heights.is_none() && rim.par_iter().any(is_pole);
-        Ok(Self { grid, rim, has_poles, heights })
+        let mut trimmed = Self { grid, rim, has_poles, heights };
+        // The heights at poles are only cut off when they are known.
+        if !has_poles {
+            trimmed.move_rim_to_samples();
+        }
+        Ok(trimmed)
+    }
+
+    /// Lets the rim run through the samples that it nearly touches, at its own height there. A sample on
+    /// the rim is inside.
+    fn move_rim_to_samples(&mut self) {
+        let part = |[a, b]: [u32; 2], p: &DVec3| {
+            let [from, to] = [a, b].map(|k| self.grid.point(k).truncate());
+            let t = (p.truncate() - from).abs().max_element() / (to - from).abs().max_element();
+            if t < AT_SAMPLE { Some(a) } else { (t > 1.0 - AT_SAMPLE).then_some(b) }
+        };
+        let mut near: Vec<(u32, [u32; 2], f64)> = (self.rim.par_iter())
+            .filter(|(edge, _)| !self.is_torn(edge[0], edge[1]))
+            .filter_map(|(edge, p)| Some((part(*edge, p)?, *edge, p.z)))
+            .collect();
+        near.par_sort_unstable_by_key(|&(sample, edge, _)| (sample, edge));
+        let mut heights = Vec::new();
+        for of_sample in near.chunk_by(|one, other| one.0 == other.0) {
+            let (sample, _, z) = of_sample[0];
+            let point = self.grid.point(sample).with_z(z);
+            let is_outside = |k: &u32| self.grid.zs()[*k as usize].is_nan();
+            let (outside, inside): (Vec<u32>, Vec<u32>) =
+                neighbors(&self.grid, sample).partition(is_outside);
+            if is_outside(&sample) {
+                // Where one edge comes to the sample inside, another may leave the domain before it.
+                if inside.len() != of_sample.len() {
+                    continue;
+                }
+                for k in inside {
+                    self.rim.remove(&[k, sample]);
+                }
+            }
+            // An edge that runs on inside beside the rim ends here too: its end would make a triangle of
+            // three points of the rim.
+            self.rim.extend(outside.into_iter().map(|k| ([sample, k], point)));
+            heights.push((sample, z));
+        }
+        for &(sample, _) in &heights {
+            // Two samples on the rim may be neighbors.
+            for other in neighbors(&self.grid, sample) {
+                if heights.binary_search_by_key(&other, |of| of.0).is_ok() {
+                    self.rim.remove(&[sample, other]);
+                }
+            }
+        }
+        self.grid.set_heights(&heights);
     }
 
     /// Whether heights seem to grow without end somewhere along the rim.
@@ -208,14 +264,21 @@ impl TrimmedGrid {
     /// height. Returns how many such points differed. `tolerance` is a height in model units.
     pub fn meet_at_rim(&mut self, other: &mut Self, tolerance: f64) -> usize {
         let mut n_moved = 0;
+        let mut samples = Vec::new();
         for (edge, p) in &mut self.rim {
             let Some(q) = other.rim.get_mut(edge) else { continue };
             if p.truncate() == q.truncate() && p.z != q.z && (p.z - q.z).abs() <= tolerance {
+                let is_sample = self.grid.point(edge[0]) == *p && other.grid.point(edge[0]) == *q;
                 p.z = 0.5 * p.z + 0.5 * q.z;
                 q.z = p.z;
                 n_moved += 1;
+                if is_sample {
+                    samples.push((edge[0], p.z));
+                }
             }
         }
+        self.grid.set_heights(&samples);
+        other.grid.set_heights(&samples);
         n_moved
     }
 
@@ -263,6 +326,22 @@ fn leaving_edges(grid: &Grid, j: u32) -> Vec<[u32; 2]> {
         }
     }
     edges
+}
+
+/// The samples that share an edge with one.
+fn neighbors(grid: &Grid, sample: u32) -> impl Iterator<Item = u32> + use<> {
+    let (nx, ny) = (grid.xs().len() as u32, grid.ys().len() as u32);
+    let (i, j) = (sample % nx, sample / nx);
+    let (left, right, below, above) = (i > 0, i + 1 < nx, j > 0, j + 1 < ny);
+    let edges = [
+        (left, sample.wrapping_sub(1)),
+        (right, sample + 1),
+        (below, sample.wrapping_sub(nx)),
+        (above, sample + nx),
+        (left && below, sample.wrapping_sub(nx + 1)),
+        (right && above, sample + nx + 1),
+    ];
+    edges.into_iter().filter_map(|(exists, other)| exists.then_some(other))
 }
 
 /// The last point on the way from the first sample to the second that is known to be inside.

@@ -14,11 +14,12 @@ use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::fold_lines::{SidedTriangle, fold_lines};
 use super::folds::{FoldFunction, FoldView};
 use super::lined_mesh::{LinedMesh, SurfaceLine};
+use crate::predicates::{Sign, orient2d};
 use crate::strokes::{StrokeKind, SurfacePart};
 
 /// A vertex is on a fold that crosses one of its edges within this part of it.
@@ -59,7 +60,6 @@ impl LinedMesh {
     pub(super) fn add_folds(&mut self, folds: &[SheetFolds], view: &FoldView) -> FoldPieces {
         let twins = self.first_twins(folds.iter().all(|of| of.function.is_in_plan()));
         let mut cuts: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-        let mut sides = vec![0_i8; self.positions.len()];
         let mut starts: Vec<usize> = self.sheets.iter().map(|sheet| sheet.first_triangle).collect();
         if starts.is_empty() {
             starts.push(0);
@@ -71,6 +71,28 @@ impl LinedMesh {
         let mut origins = Vec::with_capacity(self.triangles.len());
         let mut firsts = Vec::with_capacity(ranges.len());
         let mut sided = Vec::with_capacity(self.triangles.len());
+        let mut sides = vec![vec![0_i8; self.positions.len()]; ranges.len().min(folds.len())];
+        let mut found: Vec<Vec<Cut>> = Vec::with_capacity(sides.len());
+        for ((range, folds), sides) in ranges.iter().zip(folds).zip(&mut sides) {
+            let rim_from = self.sheets.get(found.len()).map_or(u32::MAX, |sheet| sheet.rim_from);
+            let of_sheet = &self.triangles[range.clone()];
+            let known: FxHashSet<[u32; 2]> = found.iter().flatten().map(|cut| cut.edge).collect();
+            found.push(self.cuts_of(of_sheet, folds, &twins, rim_from, &known, sides));
+        }
+        let mut twin_in_plan = self.twins_in_plan(&ranges);
+        if !twin_in_plan.is_empty() {
+            self.cut_alike(folds, &twins, &twin_in_plan, &mut found);
+        }
+        for cut in found.iter().flatten() {
+            cuts.insert(cut.edge, self.positions.len() as u32);
+            self.positions.push(cut.point);
+        }
+        if !twin_in_plan.is_empty() {
+            for cut in found.iter().flatten() {
+                let twin = key(&twins, cut.edge.map(|vertex| twin_in_plan[vertex as usize]));
+                twin_in_plan.push(cuts.get(&twin).copied().unwrap_or(u32::MAX));
+            }
+        }
         for (k, range) in ranges.into_iter().enumerate() {
             firsts.push(triangles.len());
             let of_sheet = &self.triangles[range.clone()];
@@ -79,21 +101,25 @@ impl LinedMesh {
                 triangles.extend_from_slice(of_sheet);
                 continue;
             };
-            let rim_from = self.sheets.get(k).map_or(u32::MAX, |sheet| sheet.rim_from);
-            let found = self.cuts_of(of_sheet, folds, &twins, rim_from, &cuts, &mut sides);
-            for cut in found {
-                cuts.insert(cut.edge, self.positions.len() as u32);
-                self.positions.push(cut.point);
-            }
+            let sides = &sides[k];
             let is_front = |corners: [u32; 3]| {
                 view.is_front(corners.map(|vertex| self.positions[vertex as usize]))
             };
             let cut = |ends: [u32; 2]| cuts.get(&key(&twins, ends)).copied();
             let first = triangles.len();
-            let has_rim = rim_from < u32::MAX;
+            let has_rim = self.sheets.get(k).is_some_and(|sheet| sheet.rim_from < u32::MAX);
+            let both = |corners: [u32; 3]| {
+                let other = corners.map(|v| twin_in_plan.get(v as usize).copied());
+                let other = other.map(|v| v.filter(|v| *v != u32::MAX));
+                let other = match other {
+                    [Some(a), Some(b), Some(c)] => is_front([a, b, c]),
+                    _ => false,
+                };
+                [is_front(corners), other]
+            };
             let sheet = u16::try_from(k + 1).unwrap_or(u16::MAX);
             for (corners, origin) in of_sheet.iter().zip(range.start as u32..) {
-                split(*corners, &cut, &is_front, &mut triangles);
+                split(*corners, &cut, &both, &mut triangles);
                 origins.resize(triangles.len(), origin);
             }
             let n_before = twins.len() as u32;
@@ -150,6 +176,52 @@ impl LinedMesh {
         self.positions.iter().zip(0..).map(number).collect()
     }
 
+    /// For each vertex the one above or below it, if the mesh is two sheets with the same triangles in plan;
+    /// otherwise none.
+    fn twins_in_plan(&self, ranges: &[Range<usize>]) -> Vec<u32> {
+        let [one, other] = ranges else { return Vec::new() };
+        let [one, other] = [one, other].map(|range| &self.triangles[range.clone()]);
+        let plan = |vertex: u32| self.positions[vertex as usize].truncate();
+        let is_alike = |(a, b): (&[u32; 3], &[u32; 3])| (0..3).all(|k| plan(a[k]) == plan(b[k]));
+        if one.len() != other.len() || !one.par_iter().zip(other).all(is_alike) {
+            return Vec::new();
+        }
+        let mut twins = vec![u32::MAX; self.positions.len()];
+        for (&a, &b) in one.iter().flatten().zip(other.iter().flatten()) {
+            (twins[a as usize], twins[b as usize]) = (b, a);
+        }
+        twins
+    }
+
+    /// Cuts two sheets at the same places in plan, so that their triangles lie over each other. Where both
+    /// have a fold on one edge, the first decides.
+    fn cut_alike(
+        &self,
+        folds: &[SheetFolds],
+        twins: &[u32],
+        twin_in_plan: &[u32],
+        found: &mut [Vec<Cut>],
+    ) {
+        let [of_one, of_other] = folds else { return };
+        let [one, other] = found else { return };
+        let mut room = Vec::new();
+        let mut alike = |of: &SheetFolds, cut: &Cut| {
+            let [a, b] = cut.edge.map(|vertex| twin_in_plan[vertex as usize]);
+            let edge = key(twins, [a, b]);
+            let [from, to] = [a, b].map(|vertex| self.positions[vertex as usize]);
+            let place = cut.point.truncate();
+            let z = of.function.at(place, &mut room).position.z;
+            let point = place.extend(if z.is_finite() { z } else { from.lerp(to, cut.t).z });
+            let t = if edge[0] == twins[a as usize] { cut.t } else { 1.0 - cut.t };
+            (edge != cut.edge).then_some(Cut { edge, t, point })
+        };
+        let from_one: Vec<Cut> = one.iter().filter_map(|cut| alike(of_other, cut)).collect();
+        let edges: FxHashSet<[u32; 2]> = from_one.iter().map(|cut| cut.edge).collect();
+        other.retain(|cut| !edges.contains(&cut.edge));
+        one.extend(other.iter().filter_map(|cut| alike(of_one, cut)).collect::<Vec<_>>());
+        other.extend(from_one);
+    }
+
     /// The cuts of a sheet's edges that are not cut yet. Sets the sides of its vertices.
     fn cuts_of(
         &self,
@@ -157,7 +229,7 @@ impl LinedMesh {
         folds: &SheetFolds,
         twins: &[u32],
         rim_from: u32,
-        known: &FxHashMap<[u32; 2], u32>,
+        known: &FxHashSet<[u32; 2]>,
         sides: &mut [i8],
     ) -> Vec<Cut> {
         let place = |vertex: u32| match folds.function.is_in_plan() {
@@ -194,7 +266,7 @@ impl LinedMesh {
             .flat_map_iter(|&[a, b, c]| [[a, b], [b, c], [c, a]])
             .filter(is_fold)
             .map(|ends| (key(twins, ends), ends, 1))
-            .filter(|(key, ..)| key[0] != key[1] && !known.contains_key(key))
+            .filter(|(key, ..)| key[0] != key[1] && !known.contains(key))
             .collect();
         edges.par_sort_unstable();
         edges.dedup_by(|next, first| {
@@ -208,7 +280,7 @@ impl LinedMesh {
             let [a, b] = ends.map(|vertex| self.positions[vertex as usize]);
             // Another sheet may end at the same rim, which is straight between its points.
             let is_rim = n == 1 && ends.iter().any(|vertex| *vertex >= rim_from);
-            let point = if is_rim { a + t * (b - a) } else { found.position };
+            let point = if is_rim { on_rim(a, b, t) } else { found.position };
             let is_in_order = edge[0] == twins[ends[0] as usize];
             Some(Cut { edge, t: if is_in_order { t } else { 1.0 - t }, point })
         };
@@ -226,17 +298,35 @@ impl LinedMesh {
     }
 }
 
+/// A point of a straight rim, at a part of the way along it. Surfaces lie to the left of their rims, which
+/// stay convex in plan where they are: where the point would be rounded into the surface, it moves outwards.
+fn on_rim(a: DVec3, b: DVec3, t: f64) -> DVec3 {
+    let point = a + t * (b - a);
+    let turn = |p: DVec3| orient2d(a.truncate(), p.truncate(), b.truncate());
+    if turn(point) != Sign::Negative {
+        return point;
+    }
+    let along = b - a;
+    let step = |x: f64, outwards: f64| if outwards > 0.0 { x.next_up() } else { x.next_down() };
+    let aside = [
+        DVec3 { x: step(point.x, along.y), ..point },
+        DVec3 { y: step(point.y, -along.x), ..point },
+    ];
+    aside.into_iter().find(|p| turn(*p) != Sign::Negative).unwrap_or(point)
+}
+
 /// An edge by the first vertices at its ends.
 fn key(twins: &[u32], [a, b]: [u32; 2]) -> [u32; 2] {
     let [a, b] = [a, b].map(|vertex| twins[vertex as usize]);
     [a.min(b), a.max(b)]
 }
 
-/// Splits a triangle at the vertices that cut its sides.
+/// Splits a triangle at the vertices that cut its sides. `facing` says which way the triangle faces, and
+/// the one above or below it that is to be split alike.
 fn split(
     corners: [u32; 3],
     cut: &impl Fn([u32; 2]) -> Option<u32>,
-    is_front: &impl Fn([u32; 3]) -> bool,
+    facing: &impl Fn([u32; 3]) -> [bool; 2],
     out: &mut Vec<[u32; 3]>,
 ) {
     let [a, b, c] = corners;
@@ -246,9 +336,10 @@ fn split(
         [Some(m), Some(n), None] => {
             let tip = [m, b, n];
             let halves = [[[a, m, n], [a, n, c]], [[a, m, c], [m, n, c]]];
-            let is_tip_front = is_front(tip);
+            let of_tip = facing(tip);
             let n_behind = |half: [[u32; 3]; 2]| {
-                half.into_iter().filter(|t| is_front(*t) != is_tip_front).count()
+                let n = |of: [bool; 2]| (0..2).filter(|&k| of[k] != of_tip[k]).count();
+                half.into_iter().map(|triangle| n(facing(triangle))).sum::<usize>()
             };
             out.push(tip);
             out.extend(if n_behind(halves[1]) > n_behind(halves[0]) {
@@ -258,8 +349,8 @@ fn split(
             });
         }
         // The next corner first.
-        [Some(_), None, Some(_)] => split([c, a, b], cut, is_front, out),
-        [None, ..] => split([b, c, a], cut, is_front, out),
+        [Some(_), None, Some(_)] => split([c, a, b], cut, facing, out),
+        [None, ..] => split([b, c, a], cut, facing, out),
         [Some(m), Some(n), Some(o)] => out.extend([[a, m, o], [m, b, n], [n, c, o], [m, n, o]]),
     }
 }

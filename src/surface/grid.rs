@@ -327,6 +327,15 @@ impl Grid {
         self.heights = Heights::of(&self.zs);
     }
 
+    /// Sets the heights of some samples. O(samples) if there are any.
+    pub(super) fn set_heights(&mut self, heights: &[(u32, f64)]) {
+        if heights.is_empty() {
+            return;
+        }
+        heights.iter().for_each(|&(sample, z)| self.zs[sample as usize] = z);
+        self.heights = Heights::of(&self.zs);
+    }
+
     /// Multiplies the x and y of all lines by factors above 0. O(lines).
     pub(super) fn scale_lines(&mut self, x: f64, y: f64) {
         self.xs.iter_mut().for_each(|value| *value *= x);

@@ -15,12 +15,12 @@ use crate::scenes::Rng;
 /// Rounding of where pieces end, in millimeters.
 const ROUNDING_MM: f64 = 1e-5;
 
-fn lines(engine: SurfaceEngine) -> SurfaceLines {
+pub(super) fn lines(engine: SurfaceEngine) -> SurfaceLines {
     let lines = SurfaceLines { smoothness_mm: 0.0, shortest_stroke_mm: 0.0, ..Default::default() };
     SurfaceLines { apart_by_kind: true, engine, ..lines.silhouette().without_axes() }
 }
 
-fn length(drawn: &SurfaceOutput, kind: StrokeKind) -> f64 {
+pub(super) fn length(drawn: &SurfaceOutput, kind: StrokeKind) -> f64 {
     let pairs = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
     let strokes = drawn.drawn.drawing.iter().filter(|stroke| stroke.kind == kind);
     strokes.map(|stroke| pairs(stroke.points)).sum::<f64>() * drawn.page.mm_per_image_unit()
@@ -42,7 +42,7 @@ fn random_formula(rng: &mut Rng) -> String {
     if rng.one_in(2) { terms[0].clone() } else { format!("{}+({})", terms[0], terms[1]) }
 }
 
-fn random_view(rng: &mut Rng) -> View {
+pub(super) fn random_view(rng: &mut Rng) -> View {
     let projection = rng.pick(&[ProjectionKind::Perspective, ProjectionKind::Orthographic]);
     let angles = |azimuth_deg, elevation_deg| Standpoint::Angles {
         azimuth_deg,

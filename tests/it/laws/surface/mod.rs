@@ -19,6 +19,7 @@ mod max_min;
 mod meshed;
 mod pen_path;
 mod points;
+mod rims;
 mod scales;
 mod tears;
 mod tin;
