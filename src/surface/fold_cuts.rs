@@ -79,7 +79,7 @@ impl LinedMesh {
             let known: FxHashSet<[u32; 2]> = found.iter().flatten().map(|cut| cut.edge).collect();
             found.push(self.cuts_of(of_sheet, folds, &twins, rim_from, &known, sides));
         }
-        let mut twin_in_plan = self.twins_in_plan(&ranges);
+        let mut twin_in_plan = self.twins_in_plan(&ranges, &twins);
         if !twin_in_plan.is_empty() {
             self.cut_alike(folds, &twins, &twin_in_plan, &mut found);
         }
@@ -176,14 +176,16 @@ impl LinedMesh {
         self.positions.iter().zip(0..).map(number).collect()
     }
 
-    /// For each vertex the one above or below it, if the mesh is two sheets with the same triangles in plan;
-    /// otherwise none.
-    fn twins_in_plan(&self, ranges: &[Range<usize>]) -> Vec<u32> {
+    /// For each vertex the one above or below it, if the mesh is two sheets with the same triangles in plan
+    /// that share some vertices; otherwise none.
+    fn twins_in_plan(&self, ranges: &[Range<usize>], first_twins: &[u32]) -> Vec<u32> {
         let [one, other] = ranges else { return Vec::new() };
         let [one, other] = [one, other].map(|range| &self.triangles[range.clone()]);
         let plan = |vertex: u32| self.positions[vertex as usize].truncate();
         let is_alike = |(a, b): (&[u32; 3], &[u32; 3])| (0..3).all(|k| plan(a[k]) == plan(b[k]));
-        if one.len() != other.len() || !one.par_iter().zip(other).all(is_alike) {
+        let is_shared = |vertex: &u32| first_twins[*vertex as usize] != *vertex;
+        let meet = other.iter().flatten().any(is_shared);
+        if !meet || one.len() != other.len() || !one.par_iter().zip(other).all(is_alike) {
             return Vec::new();
         }
         let mut twins = vec![u32::MAX; self.positions.len()];
