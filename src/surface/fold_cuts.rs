@@ -177,15 +177,19 @@ impl LinedMesh {
     }
 
     /// For each vertex the one above or below it, if the mesh is two sheets with the same triangles in plan
-    /// that share some vertices; otherwise none.
+    /// that meet along their whole border; otherwise none.
     fn twins_in_plan(&self, ranges: &[Range<usize>], first_twins: &[u32]) -> Vec<u32> {
         let [one, other] = ranges else { return Vec::new() };
         let [one, other] = [one, other].map(|range| &self.triangles[range.clone()]);
         let plan = |vertex: u32| self.positions[vertex as usize].truncate();
         let is_alike = |(a, b): (&[u32; 3], &[u32; 3])| (0..3).all(|k| plan(a[k]) == plan(b[k]));
         let is_shared = |vertex: &u32| first_twins[*vertex as usize] != *vertex;
-        let meet = other.iter().flatten().any(is_shared);
-        if !meet || one.len() != other.len() || !one.par_iter().zip(other).all(is_alike) {
+        let meet = || border(other).iter().flatten().all(is_shared);
+        if !other.iter().flatten().any(is_shared)
+            || !meet()
+            || one.len() != other.len()
+            || !one.par_iter().zip(other).all(is_alike)
+        {
             return Vec::new();
         }
         let mut twins = vec![u32::MAX; self.positions.len()];
@@ -315,6 +319,14 @@ fn on_rim(a: DVec3, b: DVec3, t: f64) -> DVec3 {
         DVec3 { y: step(point.y, -along.x), ..point },
     ];
     aside.into_iter().find(|p| turn(*p) != Sign::Negative).unwrap_or(point)
+}
+
+/// The edges of some triangles that only one of them has.
+fn border(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let sides = triangles.par_iter().flat_map_iter(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut sides: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    sides.par_sort_unstable();
+    sides.chunk_by(|a, b| a == b).filter(|uses| uses.len() == 1).map(|uses| uses[0]).collect()
 }
 
 /// An edge by the first vertices at its ends.
