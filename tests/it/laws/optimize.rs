@@ -555,3 +555,43 @@ fn strokes_of_drawings_are_not_cut_for_hardly_any_ink() {
     assert_eq!(n(1.0, &OptimizeOptions { keeps_fewer: false, ..options }), 3);
     assert_eq!(n(5.0, &options), 3);
 }
+
+#[test]
+fn zeros_of_either_sign_are_one_joint() {
+    let lines = polylines(&[
+        vec![dvec2(-1.0, 0.0), dvec2(-0.0, 0.0)],
+        vec![dvec2(0.0, -0.0), dvec2(1.0, 1.0)],
+    ]);
+    assert_eq!(optimize_lines(&lines, None, &exact(Effort::Fast)).lines.len(), 1);
+}
+
+#[test]
+fn ends_join_within_the_tolerance() {
+    let lines = polylines(&[
+        vec![dvec2(0.0, 0.0), dvec2(10.0, 0.0)],
+        vec![dvec2(10.4, 0.0), dvec2(20.0, 0.0)],
+    ]);
+    for (tolerance, n) in [(0.39, 2), (0.41, 1)] {
+        let options = OptimizeOptions::default().join_tolerance_mm(tolerance);
+        assert_eq!(optimize_lines(&lines, None, &options).lines.len(), n, "{tolerance}");
+    }
+}
+
+#[test]
+fn strokes_run_on_so_that_they_turn_least_in_all() {
+    // Straight on from 0 to 180 degrees would leave a turn of 130 degrees.
+    let ray = |degrees: f64| dvec2(degrees.to_radians().cos(), degrees.to_radians().sin());
+    let rays = [0.0, 100.0, 150.0, 180.0].map(ray);
+    let lines = polylines(&rays.map(|end| vec![DVec2::ZERO, end]));
+    let joined = optimize_lines(&lines, None, &exact(Effort::Fast)).lines;
+    let mut ends: Vec<[usize; 2]> = joined
+        .iter()
+        .map(|line| {
+            let of = |p: DVec2| rays.iter().position(|ray| ray.distance(p) < 1e-6).unwrap();
+            let [a, b] = [of(line[0]), of(line[line.len() - 1])];
+            [a.min(b), a.max(b)]
+        })
+        .collect();
+    ends.sort_unstable();
+    assert_eq!(ends, [[0, 2], [1, 3]]);
+}

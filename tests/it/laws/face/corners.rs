@@ -9,7 +9,7 @@ use hiddenline::stages::model::scene::Scene;
 use hiddenline::stages::predicates::{CornerPlace, PlaneName, Planes, Sign};
 
 /// Numbers count in this power of two: finer than any that comes up.
-const UNIT: i32 = -400;
+const UNIT: i32 = -1100;
 
 fn point(p: [f64; 3]) -> Point {
     let [x, y, z] = p.map(|x| scaled(x, UNIT));
@@ -75,10 +75,13 @@ fn check(scene: &Scene, fragments: &[Fragment], n_checked: &mut [u32; 3]) {
                 CornerPlace::InFace(_) => 2,
             };
             n_checked[kind] += 1;
-            let error = scaled(corner.error, UNIT) * &truth[3];
-            for (i, x) in corner.point.to_array().into_iter().enumerate() {
-                let off = &truth[i] - scaled(x, UNIT) * &truth[3];
-                assert!(off <= error && -off <= error, "{corner:?}");
+            // Unknown where numbers are out of range.
+            if corner.error.is_finite() {
+                let error = scaled(corner.error, UNIT) * &truth[3];
+                for (i, x) in corner.point.to_array().into_iter().enumerate() {
+                    let off = &truth[i] - scaled(x, UNIT) * &truth[3];
+                    assert!(off <= error && -off <= error, "{corner:?}");
+                }
             }
             // Its own plane, where all depends on the exact path, and some others.
             for (name, form) in forms.iter().skip(k).step_by(7).take(5) {
@@ -121,6 +124,14 @@ fn corners_are_where_integers_say() {
         }
         let scene = model.seen_by("any", orthographic([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
         check_both(&Scene::new(mesh(&scene)), &mut n_checked);
+    }
+    // Products of three so small numbers lose their digits, and then vanish.
+    for exponent in [-330, -342, -348, -356, -365] {
+        for seed in 0..6 {
+            let mut scene = random(seed);
+            scene.positions.iter_mut().flatten().for_each(|x| *x *= 2f64.powi(exponent));
+            check_both(&Scene::new(mesh(&scene)), &mut n_checked);
+        }
     }
     eprintln!("vertices, on edges, in faces: {n_checked:?}");
     assert!(n_checked.iter().all(|&n| n > 500), "{n_checked:?}");
