@@ -31,8 +31,8 @@ pub use self::dash::Dash;
 use self::dash::VisibleEnds;
 pub use self::paper::{Paper, PaperError, parse_length_mm};
 pub use self::pens::{
-    LayerControls, LineWeights, PenRole, PenRule, default_pen_color, idle_pens, pen_of,
-    tells_sheets_apart, with_hatch_pen, with_index_pen, with_line_pens, with_sheet_pens,
+    LayerControls, LineWeights, PenRole, PenRule, default_pen_color, hatch_width_mm, idle_pens,
+    pen_of, tells_sheets_apart, with_hatch_pen, with_index_pen, with_line_pens, with_sheet_pens,
     with_underside_pen,
 };
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};

@@ -9,7 +9,7 @@ use crate::draw::{DrawOptions, draw};
 use crate::extent::Extent;
 use crate::hatch::{HatchOptions, HatchPage, hatch, shadow_outlines};
 use crate::model::scene::Scene;
-use crate::page::{Dash, Page, PageOptions, PenRole, PenRule, PlotOptions, with_hatch_pen};
+use crate::page::{Dash, Page, PageOptions, PenRule, PlotOptions, hatch_width_mm, with_hatch_pen};
 use crate::shading::fill::{DEFAULT_SEAM_MM, FillOptions, fill};
 use crate::strokes::{StrokeKind, Strokes};
 
@@ -223,10 +223,8 @@ impl Drawing<'_> {
             strokes.append(&outlines);
         }
         if let Some(options) = &self.hatch {
-            let hatch_pen = PenRole::Kind(StrokeKind::Hatch);
-            let rule = self.plot.pens.iter().rev().find(|rule| rule.drawn == hatch_pen);
-            let width_mm = rule.map_or(self.plot.pen_width_mm, |rule| rule.pen.width_mm);
-            let page = HatchPage::new(page, width_mm);
+            let page =
+                HatchPage::new(page, hatch_width_mm(&self.plot.pens, self.plot.pen_width_mm));
             strokes.append(&hatch(self.scene, camera, options, lines, &page)?);
         }
         Ok(strokes)

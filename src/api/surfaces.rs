@@ -6,9 +6,11 @@ use std::path::Path;
 use super::{Error, Sheet};
 use crate::camera::framing::View;
 use crate::draw::surface::{SurfaceError, SurfaceLines, SurfaceOutput, draw_surface};
+use crate::hatch::{HatchOptions, hatch_surface};
 use crate::model::scene::Scene;
 use crate::page::{
-    Page, PageOptions, PenRule, PlotOptions, tells_sheets_apart, with_index_pen, with_sheet_pens,
+    Page, PageOptions, PenRule, PlotOptions, hatch_width_mm, tells_sheets_apart, with_hatch_pen,
+    with_index_pen, with_sheet_pens,
 };
 use crate::strokes::Strokes;
 use crate::surface::{HeightField, HeightOptions, LatticeLines, Surface, read_heights};
@@ -41,6 +43,7 @@ impl Surface {
             surface: self,
             view: *view,
             lines: lines.clone(),
+            hatch: None,
             plot: PlotOptions::default(),
         }
     }
@@ -94,6 +97,7 @@ pub struct SurfaceDrawing<'a> {
     surface: &'a Surface,
     view: View,
     lines: SurfaceLines,
+    hatch: Option<HatchOptions>,
     plot: PlotOptions,
 }
 
@@ -117,6 +121,22 @@ impl SurfaceDrawing<'_> {
         self
     }
 
+    /// Also hatches the surface by its light, with lines of the kind [`StrokeKind::Hatch`](crate::StrokeKind).
+    ///
+    /// ```
+    /// use hiddenline::{HatchOptions, Paper, Surface, SurfaceLines, View};
+    ///
+    /// let hill = Surface::formula("2*exp(-r^2)")?.x(-2.0, 2.0).y(-2.0, 2.0).samples(31, 31);
+    /// let drawing = hill.draw(&View::default(), &SurfaceLines::default().no_grid_lines());
+    /// let sheet = drawing.hatched(HatchOptions::default()).on(Paper::A6)?;
+    /// assert_eq!(sheet.plot().layers.len(), 2);
+    /// # Ok::<(), hiddenline::Error>(())
+    /// ```
+    pub fn hatched(mut self, options: HatchOptions) -> Self {
+        self.hatch = Some(options);
+        self
+    }
+
     /// Puts the drawing on a sheet of paper, by default as large as a margin of 10 mm allows.
     ///
     /// # Errors
@@ -137,8 +157,11 @@ impl SurfaceDrawing<'_> {
         if let Some(legend) = &mut lines.legend {
             (legend.pens, legend.pen_width_mm) = (plot.pens.clone(), plot.pen_width_mm);
         }
-        let SurfaceOutput { drawn, page, notes, has_index_levels, .. } =
-            draw_surface(self.surface, &self.view, &lines, &page.into())?;
+        let output = self.draw(&lines, page.into())?;
+        let SurfaceOutput { drawn, page, notes, has_index_levels, .. } = output;
+        if self.hatch.is_some() {
+            plot.pens = with_hatch_pen(plot.pens, plot.pen_width_mm);
+        }
         if has_index_levels {
             plot.pens = with_index_pen(plot.pens, plot.pen_width_mm);
         }
@@ -152,7 +175,19 @@ impl SurfaceDrawing<'_> {
     /// As for [`on`](Self::on).
     pub fn strokes(&self, page: impl Into<PageOptions>) -> Result<(Strokes, Page), Error> {
         let lines = SurfaceLines { apart_by_kind: true, ..self.lines.clone() };
-        let output = draw_surface(self.surface, &self.view, &lines, &page.into())?;
+        let output = self.draw(&lines, page.into())?;
         Ok((output.drawn.drawing, output.page))
+    }
+
+    fn draw(&self, lines: &SurfaceLines, page: PageOptions) -> Result<SurfaceOutput, Error> {
+        let Some(options) = &self.hatch else {
+            return Ok(draw_surface(self.surface, &self.view, lines, &page)?);
+        };
+        let lines = SurfaceLines { keep_scene: true, ..lines.clone() };
+        let mut output = draw_surface(self.surface, &self.view, &lines, &page)?;
+        let width_mm = hatch_width_mm(&self.plot.pens, self.plot.pen_width_mm);
+        let hatched = hatch_surface(&output, options, lines.exact, width_mm)?;
+        output.drawn.drawing.append(&hatched);
+        Ok(output)
     }
 }

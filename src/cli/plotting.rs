@@ -7,7 +7,9 @@ use hiddenline::stages::optimize::estimate::{self, Motion, PenWork};
 use hiddenline::stages::optimize::{
     Effort, OptimizeOptions, Watch, optimize_watched, split_by_distance,
 };
-use hiddenline::stages::page::{LayerControls, PenRole, PenRule, default_pen_color, idle_pens};
+use hiddenline::stages::page::{
+    LayerControls, PenRole, PenRule, default_pen_color, hatch_width_mm, idle_pens,
+};
 use hiddenline::stages::plot::{Pen, Plot};
 use hiddenline::stages::strokes::{StrokeKind, Strokes};
 use hiddenline::stages::write::Format;
@@ -154,9 +156,7 @@ impl Plotting {
 
     /// The width of the pen that hatches; `width_mm` if it has none of its own.
     pub(super) fn hatch_width_mm(&self, width_mm: f64) -> f64 {
-        let hatch = PenRole::Kind(StrokeKind::Hatch);
-        let rule = self.pens(width_mm).into_iter().rev().find(|rule| rule.drawn == hatch);
-        rule.map_or(width_mm, |rule| rule.pen.width_mm)
+        hatch_width_mm(&self.pens(width_mm), width_mm)
     }
 
     /// Whether hidden lines have pens.

@@ -10,11 +10,11 @@ mod live;
 
 use std::error::Error;
 
+use hiddenline::stages::draw::DEFAULT_SHORTEST_STROKE_MM;
 use hiddenline::stages::draw::surface::{
     NoLevels, SurfaceError, SurfaceLines, SurfaceNote, draw_surface,
 };
-use hiddenline::stages::draw::{DEFAULT_SHORTEST_STROKE_MM, DrawOptions};
-use hiddenline::stages::hatch::{HatchOptions, HatchPage, hatch};
+use hiddenline::stages::hatch::{HatchOptions, hatch_surface};
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
 use hiddenline::stages::page::{
     PageOptions, PlotOptions, with_hatch_pen, with_index_pen, with_underside_pen,
@@ -68,21 +68,15 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
     run.progress.stage("drawing");
     let drawing = draw_surface(surface, &view, &job.lines, &job.page);
     let mut drawing = drawing.map_err(|error| failed(job, &error))?;
-    if let Some((options, scene)) = job.hatch.as_ref().zip(drawing.scene.take()) {
+    if let Some(options) = &job.hatch {
         run.progress.stage("hatching");
         let width_mm = job.output.plotting.hatch_width_mm(job.pen_width_mm);
-        let page = HatchPage::new(&drawing.page, width_mm);
-        let lines = DrawOptions {
-            exact: job.lines.exact,
-            contact_tolerance: Some(0.0),
-            ..DrawOptions::default()
-        };
-        let drawn = &mut drawing.drawn;
-        let hatched = timed(&mut drawn.seconds.visibility, || {
-            hatch(&scene, &drawing.camera, options, &lines, &page)
-        });
-        drawn.drawing.append(&hatched.map_err(|error| hatching::with_remedy(&error))?);
-        drawing.is_ordered = false;
+        let mut seconds = 0.0;
+        let hatched =
+            timed(&mut seconds, || hatch_surface(&drawing, options, job.lines.exact, width_mm));
+        drawing.drawn.seconds.visibility += seconds;
+        drawing.drawn.drawing.append(&hatched.map_err(|error| hatching::with_remedy(&error))?);
+        (drawing.scene, drawing.is_ordered) = (None, false);
     }
     warnings.extend(drawing.notes.iter().map(noted));
     let is_json = job.output.format == Format::Json;

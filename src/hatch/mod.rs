@@ -32,6 +32,7 @@ mod tone;
 use crate::camera::Camera;
 use crate::classify::{LineSelection, ViewSegments, ViewedScene};
 use crate::draw::DrawOptions;
+use crate::draw::surface::SurfaceOutput;
 use crate::engines::edge::{VisibilityOptions, roberts};
 use crate::engines::visibility::{Span, Visibility};
 use crate::model::scene::Scene;
@@ -53,6 +54,23 @@ pub use self::options::{
     DEFAULT_WHITE, Ground, HatchError, HatchLevels, HatchMaterial, HatchMethod, HatchOptions,
     HatchPage, HatchShadows, LEVELS, MOST_FAMILIES,
 };
+
+/// Hatches a surface as its drawing shows it. There is no hatching if the drawing kept no scene.
+///
+/// With `exact` every line of base distance is there; see [`hatch`]. `width_mm` is that of the pen.
+///
+/// # Errors
+/// See [`HatchError`].
+pub fn hatch_surface(
+    drawing: &SurfaceOutput,
+    options: &HatchOptions,
+    exact: bool,
+    width_mm: f64,
+) -> Result<Strokes, HatchError> {
+    let Some(scene) = &drawing.scene else { return Ok(Strokes::default()) };
+    let lines = DrawOptions { exact, contact_tolerance: Some(0.0), ..DrawOptions::default() };
+    hatch(scene, &drawing.camera, options, &lines, &HatchPage::new(&drawing.page, width_mm))
+}
 
 /// Hatches `scene` as `camera` sees it.
 ///

@@ -277,6 +277,13 @@ pub fn with_hatch_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
     rules
 }
 
+/// The width of the pen that hatches by some rules, in millimeters; that of the other pens unless they say.
+pub fn hatch_width_mm(rules: &[PenRule], width_mm: f64) -> f64 {
+    let hatch = PenRole::Kind(StrokeKind::Hatch);
+    let rule = rules.iter().rev().find(|rule| rule.drawn == hatch);
+    rule.map_or(width_mm, |rule| rule.pen.width_mm)
+}
+
 /// Adds the usual pen of index lines to `rules`, unless these have one: twice as wide as that of the other
 /// level curves.
 pub fn with_index_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {

@@ -420,8 +420,8 @@ mod tests {
 
     #[test]
     fn a_cell_nearer_to_an_open_side_than_the_image_is_exact_is_not_covered() {
-        let mut soup = PolygonSoup::default();
-        soup.positions = vec![dvec3(-1.0, -3.0, 0.0), dvec3(5.0, 0.0, 0.0), dvec3(-1.0, 3.0, 0.0)];
+        let positions = vec![dvec3(-1.0, -3.0, 0.0), dvec3(5.0, 0.0, 0.0), dvec3(-1.0, 3.0, 0.0)];
+        let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
         soup.push_face(&[0, 1, 2]);
         let scene = Mesh::new(soup).map(|(mesh, _)| Scene::new(mesh)).unwrap_or_default();
         let eye = dvec3(0.0, 0.0, 7.0);
