@@ -129,7 +129,7 @@ impl SurfaceDrawing<'_> {
     /// let hill = Surface::formula("2*exp(-r^2)")?.x(-2.0, 2.0).y(-2.0, 2.0).samples(31, 31);
     /// let drawing = hill.draw(&View::default(), &SurfaceLines::default().no_grid_lines());
     /// let sheet = drawing.hatched(HatchOptions::default()).on(Paper::A5)?;
-    /// assert_eq!(sheet.plot().layers.len(), 2);
+    /// assert_eq!(sheet.plot().layers[0].name, "hatch");
     /// # Ok::<(), hiddenline::Error>(())
     /// ```
     pub fn hatched(mut self, options: HatchOptions) -> Self {
