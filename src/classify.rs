@@ -27,7 +27,7 @@ use crate::camera::{Camera, ImageError, ImagePoint};
 use crate::model::creases::CreaseAngle;
 use crate::model::scene::{LineSource, Scene};
 use crate::model::topology::EdgeUse;
-use crate::predicates::{Sight, Sign, exact};
+use crate::predicates::{Kept, Sight, Sign, exact};
 use crate::strokes::{StrokeKind, SurfacePart};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -295,6 +295,15 @@ impl<'a> ViewedScene<'a> {
     /// Whether any vertex is not strictly beyond the near plane.
     pub fn near_plane_cuts(&self) -> bool {
         self.near_plane_cuts
+    }
+
+    /// What the near plane keeps of a triangle. Exact.
+    #[inline]
+    pub fn kept(&self, triangle: u32) -> Kept {
+        match self.near_plane_cuts {
+            true => self.sight.kept_of_triangle(self.scene.triangles()[triangle as usize]),
+            false => Kept::All,
+        }
     }
 
     /// The edges to draw, each with whether all of it is drawn and not only the outline.

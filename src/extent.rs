@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use self::window::Window;
 use crate::camera::{Camera, ImagePoint, Projection};
-use crate::predicates::{Cut, CutPlane, Sight, Sign};
+use crate::predicates::Sight;
 
 /// In perspective, only what lies within this angle of the direction of view, across and up, is
 /// fitted to a page. Otherwise a point beside the eye would shrink everything else to a dot.
@@ -66,7 +66,7 @@ impl Extent {
         let sight = Sight::new(points, camera);
         let (eye, frame) = (camera.eye(), camera.frame());
         let kept = |&ends: &[u32; 2]| -> Option<[DVec2; 2]> {
-            let (from, to) = beyond_near_plane(&sight, ends)?;
+            let [from, to] = sight.kept_of_segment(ends)?;
             let [a, b] = ends.map(|p| ImagePoint::new(points[p as usize] - eye, camera, &frame));
             Some([from.t, to.t].map(|t| a.towards(b, t).image()))
         };
@@ -136,16 +136,4 @@ fn clipped([a, b]: [DVec2; 2]) -> Extent {
         Extent::at(p.clamp(window.low, window.high))
     };
     at(t0, 0.0, a).union(at(t1, 1.0, b))
-}
-
-/// The part of a segment that the near plane keeps, decided exactly; `None` when it keeps nothing.
-fn beyond_near_plane(sight: &Sight, ends: [u32; 2]) -> Option<(Cut, Cut)> {
-    let [(a, a_sign), (b, b_sign)] = ends.map(|end| sight.near_distance(end));
-    let cut = || sight.cut(ends, CutPlane::Near, [a, b]);
-    match (a_sign, b_sign) {
-        (Sign::Negative, Sign::Positive) => Some((cut(), Cut::END)),
-        (Sign::Positive, Sign::Negative) => Some((Cut::START, cut())),
-        (Sign::Negative, _) | (_, Sign::Negative) => None,
-        _ => Some((Cut::START, Cut::END)),
-    }
 }

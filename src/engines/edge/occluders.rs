@@ -1,7 +1,7 @@
 //! The triangles that hide something.
 
 use crate::classify::ViewedScene;
-use crate::predicates::Sign;
+use crate::predicates::{Kept, Sign};
 use rayon::prelude::*;
 
 /// Triangles that cover something and lie wholly beyond the near plane, less those culled.
@@ -17,16 +17,12 @@ pub(super) struct Occluders {
 impl Occluders {
     /// All occluders of a view. O(triangles), in parallel.
     pub(super) fn new(view: &ViewedScene) -> Self {
-        let triangles = view.scene().triangles();
-        let is_kept = |&corner: &u32| view.sight().near_distance(corner).1 != Sign::Negative;
         let contains: Vec<bool> = view
             .triangle_turns()
             .par_iter()
-            .zip(triangles)
+            .zip(0..view.scene().triangles().len() as u32)
             .with_min_len(4096)
-            .map(|(&turn, corners)| {
-                turn != Sign::Zero && (!view.near_plane_cuts() || corners.iter().all(is_kept))
-            })
+            .map(|(&turn, triangle)| turn != Sign::Zero && view.kept(triangle) == Kept::All)
             .collect();
         Self { list: numbers(&contains), contains, are_culled: false }
     }

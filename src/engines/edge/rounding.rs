@@ -5,7 +5,7 @@
 use super::segment::Segment;
 use crate::camera::{ImageError, ImagePoint};
 use crate::classify::ViewedScene;
-use crate::predicates::Sign;
+use crate::predicates::{Kept, Sign};
 use glam::{DVec2, DVec3};
 
 /// A box in the image and the range of depths in it, rounded outwards.
@@ -116,14 +116,10 @@ impl Rounding {
             return Place::Nowhere;
         }
         let corners = view.scene().triangles()[triangle as usize];
-        if view.near_plane_cuts() {
-            let signs = corners.map(|corner| view.sight().near_distance(corner).1);
-            if signs == [Sign::Negative; 3] {
-                return Place::Nowhere;
-            }
-            if signs.contains(&Sign::Negative) {
-                return Place::Everywhere;
-            }
+        match view.kept(triangle) {
+            Kept::All => {}
+            Kept::Part(_) => return Place::Everywhere,
+            Kept::Nothing => return Place::Nowhere,
         }
         let points = corners.map(|corner| view.image()[corner as usize]);
         let image = points.map(ImagePoint::image);

@@ -1,7 +1,7 @@
 //! A drawn line as the engines see it: its ends, what the near plane leaves of it, its image.
 
 use crate::classify::ViewedScene;
-use crate::predicates::{Cut, CutPlane, Sign};
+use crate::predicates::Cut;
 use glam::DVec2;
 
 /// An edge or other line, clipped by the near plane, with its rounded image for quick rejection.
@@ -26,20 +26,10 @@ impl Segment {
     pub(super) fn new(view: &ViewedScene, edge: u32) -> Option<Self> {
         let ends = view.line(edge);
         let sight = view.sight();
-        let (mut from, mut to) = (Cut::START, Cut::END);
-        if view.near_plane_cuts() {
-            let [(a, a_sign), (b, b_sign)] = ends.map(|end| sight.near_distance(end));
-            match (a_sign, b_sign) {
-                (Sign::Negative, Sign::Positive) => {
-                    from = sight.cut(ends, CutPlane::Near, [a, b]);
-                }
-                (Sign::Positive, Sign::Negative) => {
-                    to = sight.cut(ends, CutPlane::Near, [a, b]);
-                }
-                (Sign::Negative, _) | (_, Sign::Negative) => return None,
-                _ => {}
-            }
-        }
+        let [from, to] = match view.near_plane_cuts() {
+            true => sight.kept_of_segment(ends)?,
+            false => [Cut::START, Cut::END],
+        };
         let points = ends.map(|end| view.image()[end as usize]);
         let points = [from.t, to.t].map(|t| points[0].towards(points[1], t));
         Some(Self {

@@ -14,7 +14,7 @@
 
 use super::segment::Segment;
 use crate::classify::ViewedScene;
-use crate::predicates::{Cut, CutPlane, Estimate, Sign};
+use crate::predicates::{Cut, CutPlane, Estimate, Kept, Sign};
 use std::cmp::Ordering;
 
 /// The sides of a segment, looking from its first end to its last, y up.
@@ -124,7 +124,6 @@ pub(super) fn shadow(
     if corners.contains(&ends[0]) && corners.contains(&ends[1]) {
         return None;
     }
-    let near_signs = near_signs(view, corners)?;
     let sight = view.sight();
     let mut range = Range { from: segment.from, to: segment.to };
     // Depth first: it rules out all that lies behind.
@@ -143,7 +142,7 @@ pub(super) fn shadow(
         return None;
     }
 
-    let (cover, border) = within_image(view, segment, triangle, near_signs, range)?;
+    let (cover, border) = within_image(view, segment, triangle, range)?;
     if in_plane {
         // A segment in the triangle's plane shares its image with it only along a border.
         return border.map(|border| Shadow::OnBorder(cover, border));
@@ -165,9 +164,8 @@ pub(super) fn image_cover(view: &ViewedScene, segment: &Segment, triangle: u32) 
     if view.triangle_turns()[triangle as usize] == Sign::Zero {
         return None;
     }
-    let near_signs = near_signs(view, view.scene().triangles()[triangle as usize])?;
     let range = Range { from: segment.from, to: segment.to };
-    within_image(view, segment, triangle, near_signs, range).map(|(cover, _)| cover)
+    within_image(view, segment, triangle, range).map(|(cover, _)| cover)
 }
 
 /// The part of `segment` that is strictly in front of `triangle` and has its image in that of it: what
@@ -183,7 +181,6 @@ pub(super) fn cover_of_front(
     if turn == Sign::Zero || ends.iter().all(|end| corners.contains(end)) {
         return None;
     }
-    let near_signs = near_signs(view, corners)?;
     let sight = view.sight();
     let mut range = Range { from: segment.from, to: segment.to };
     let plane = sight.triangle_plane(corners);
@@ -193,18 +190,7 @@ pub(super) fn cover_of_front(
     if signs == [Sign::Zero; 2] || !range.keep(view, ends, signs, cut) {
         return None;
     }
-    within_image(view, segment, triangle, near_signs, range).map(|(cover, _)| cover)
-}
-
-/// On which side of the near plane the corners of a triangle are; `None` when nothing is kept.
-#[inline]
-fn near_signs(view: &ViewedScene, corners: [u32; 3]) -> Option<[Sign; 3]> {
-    if !view.near_plane_cuts() {
-        return Some([Sign::Positive; 3]);
-    }
-    let signs = corners.map(|corner| view.sight().near_distance(corner).1);
-    // A triangle in the near plane itself is kept; one that only touches it leaves no area.
-    (signs.contains(&Sign::Positive) || signs == [Sign::Zero; 3]).then_some(signs)
+    within_image(view, segment, triangle, range).map(|(cover, _)| cover)
 }
 
 /// What is left of `range` within the image of what the near plane keeps of a triangle, and the
@@ -214,9 +200,12 @@ fn within_image(
     view: &ViewedScene,
     segment: &Segment,
     triangle: u32,
-    near_signs: [Sign; 3],
     mut range: Range,
 ) -> Option<(Cover, Option<[u32; 2]>)> {
+    let kept = view.kept(triangle);
+    if kept == Kept::Nothing {
+        return None;
+    }
     let turn = view.triangle_turns()[triangle as usize];
     let corners = view.scene().triangles()[triangle as usize];
     let (ends, sight) = (segment.ends, view.sight());
@@ -236,11 +225,11 @@ fn within_image(
         }
     }
 
-    let mut along_near_cut = false;
-    if near_signs.contains(&Sign::Negative) {
+    let mut kept_beside_cut = None;
+    if let Kept::Part(corner_signs) = kept {
         let signs = sight.near_cut(corners, ends).map(|sign| sign.times(turn.flipped()));
         if signs == [Sign::Zero; 2] {
-            along_near_cut = true;
+            kept_beside_cut = corner_signs.iter().position(|&sign| sign == Sign::Positive);
         } else {
             // The exact path was needed for the signs, so there are no estimates to start from.
             let unknown = Estimate { value: 0.0, error: f64::INFINITY };
@@ -251,12 +240,8 @@ fn within_image(
         }
     }
 
-    let sides = match along {
-        Some(side) => side_of(view, ends, corners[(side + 2) % 3]),
-        None if along_near_cut => {
-            let kept = (0..3).find(|&i| near_signs[i] == Sign::Positive)?;
-            side_of(view, ends, corners[kept])
-        }
+    let sides = match along.map(|side| (side + 2) % 3).or(kept_beside_cut) {
+        Some(corner) => side_of(view, ends, corners[corner]),
         None => Sides::Both,
     };
     let cover = Cover { from: range.from, to: range.to, sides };

@@ -46,7 +46,7 @@ use crate::camera::{Camera, Projection};
 use crate::classify::ViewedScene;
 use crate::engines::visibility::{Span, Visibility};
 use crate::model::scene::Scene;
-use crate::predicates::Sign;
+use crate::predicates::{Kept, Sign};
 
 mod sheets;
 
@@ -94,16 +94,14 @@ pub fn solve_in_strips(
 
 /// Whether every triangle is beyond the near plane, or wholly behind the eye, where it hides nothing.
 fn is_clear_of_near_plane(view: &ViewedScene) -> bool {
-    if !view.near_plane_cuts() {
-        return true;
-    }
     let (camera, positions) = (view.camera(), view.scene().mesh().positions());
-    let is_kept = |v: u32| view.sight().near_distance(v).1 != Sign::Negative;
     let is_behind = |v: u32| (positions[v as usize] - camera.eye()).dot(camera.forward()) <= 0.0;
-    let is_clear = |corners: &[u32; 3]| {
-        corners.iter().all(|&v| is_kept(v)) || corners.iter().all(|&v| is_behind(v))
+    let is_clear = |triangle: u32| {
+        view.kept(triangle) == Kept::All
+            || view.scene().triangles()[triangle as usize].into_iter().all(is_behind)
     };
-    view.scene().triangles().par_iter().all(is_clear)
+    let triangles = 0..view.scene().triangles().len() as u32;
+    !view.near_plane_cuts() || triangles.into_par_iter().all(is_clear)
 }
 
 /// A triangulated surface as one camera sees it.
