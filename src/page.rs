@@ -40,7 +40,7 @@ pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 /// Empty border of the page in millimeters, unless set otherwise.
 pub const DEFAULT_MARGIN_MM: f64 = 10.0;
 
-/// Width of the pen's line in millimeters, unless set otherwise.
+/// Line width of the pen in millimeters, unless set otherwise.
 pub const DEFAULT_PEN_WIDTH_MM: f64 = 0.3;
 
 /// Cropping leaves alone what is outside the margins by less than half of the last digit that

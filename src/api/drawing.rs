@@ -121,7 +121,7 @@ impl Drawing<'_> {
         self
     }
 
-    /// Width of the pen's line in millimeters; 0.3 unless set.
+    /// Line width of the pen in millimeters; 0.3 unless set.
     pub fn pen_width_mm(mut self, width_mm: f64) -> Self {
         self.plot.pen_width_mm = width_mm;
         self

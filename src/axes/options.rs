@@ -79,7 +79,7 @@ pub enum AxesStyle {
 /// How the box's edges in front of the surface are drawn.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum BoxFront {
-    /// Dashed, 1 mm and 1 mm.
+    /// Dashes of 1 mm with gaps of 1 mm.
     #[default]
     Dashed,
     /// Solid.

@@ -84,7 +84,7 @@ pub enum Standpoint {
 /// Perspective or orthographic projection, without parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProjectionKind {
-    /// Lines of sight meet in the eye.
+    /// Lines of sight meet at the eye.
     Perspective,
     /// Lines of sight are parallel.
     Orthographic,

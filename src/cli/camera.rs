@@ -37,7 +37,7 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "DEG", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["eye", "view"])]
     elevation: Option<f64>,
-    /// Distance from target to eye [default: the whole scene in view]
+    /// Distance from target to eye [default: far enough to see the whole scene]
     #[arg(long, value_name = "D", value_parser = values::positive, conflicts_with = "eye")]
     distance: Option<f64>,
     /// Named view; orthographic unless --projection says otherwise
@@ -48,14 +48,14 @@ pub(super) struct CameraArgs {
     projection: Option<ProjectionKind>,
     /// Vertical field of view in degrees [default: 30]
     ///
-    /// It affects only the distance of an automatic camera, and what --fit-fov shows.
+    /// It only affects the automatic camera distance and --fit-fov.
     #[arg(long, value_name = "DEG", value_parser = values::field_of_view)]
     fov: Option<f64>,
     /// Distance of the near plane from the eye, as a fraction of the distance to the target [default:
     /// 0.000001]
     #[arg(long, value_name = "PART", value_parser = values::positive)]
     near: Option<f64>,
-    /// Use the camera of a file written by --format json
+    /// Use the camera from a file written by --format json
     #[arg(long, value_name = "FILE")]
     #[arg(conflicts_with_all = ["eye", "target", "up", "azimuth", "elevation", "distance", "view",
         "projection", "fov", "near"])]

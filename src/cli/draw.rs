@@ -48,21 +48,21 @@ Examples:
   hiddenline draw part.stl --view isometric --hidden dashed --page a3 -o part.svg
       An isometric drawing with hidden lines dashed, on their own layer.
   hiddenline draw house.obj --up-axis y --eye=-30,-40,12 --fov 50 -o house.png
-      A picture seen from a given point. Numbers may be negative.
+      A PNG, seen from a given point. Numbers may be negative.
   hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
       True to scale, for a model in millimeters.
   hiddenline draw spot.obj --up-axis y --hatch --ground --light 1,-1,2 -o spot.svg
-      Hatched by the light, with its shadow on the ground.
+      Hatched, with its shadow on the ground.
   hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
       Two models, the second one lifted.
   cat part.stl | hiddenline draw - --input-format stl > part.svg
       From standard input to standard output.
   hiddenline draw cow.obj --turntable 36 -o 'frames/{stem}-{index:03}.svg'
-      Frames of a film, all at one scale.
+      Frames of an animation, all at the same scale.
   hiddenline draw --each parts/*.stl -o 'out/{stem}.svg'
       A drawing of each model.";
 
-/// Draw models as lines, the hidden ones removed
+/// Draw models as lines, with hidden lines removed
 ///
 /// Reads OBJ, STL (text or binary), PLY, OFF, glTF (.gltf, .glb) and 3MF, and writes SVG for print
 /// and pen plotters, PNG, or the strokes as JSON. Several models are drawn together as one scene. The

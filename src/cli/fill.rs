@@ -61,7 +61,7 @@ Examples:
 
 // Only these formats have filled areas.
 const OUTPUT_HELP: &str = "\
-File to write, its format given by the extension; `-` is standard output
+File to write, in the format given by its extension; `-` is standard output
 
 .svg; .pdf; .png";
 const FORMAT_HELP: &str =
@@ -107,11 +107,11 @@ struct EdgeArgs {
     /// Draw areas only
     #[arg(long, overrides_with = "edges")]
     no_edges: bool,
-    /// Kinds of line on top, as for `draw`
+    /// Kinds of lines to draw on top, as for `draw`
     #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     lines: LineSelection,
-    /// Faces that meet at more than this angle make a crease
+    /// Faces that meet at more than this angle form a crease
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_CREASE_DEG)]
     crease: f64,

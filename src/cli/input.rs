@@ -25,8 +25,8 @@ pub(super) struct InputArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 struct FormulaArgs {
-    /// Show the surface z = EXPR, a formula of x, y, r and theta, instead of models; give it once for
-    /// each sheet
+    /// Show the surface z = EXPR, a formula in x, y, r and theta, instead of models; repeat it for more
+    /// sheets
     #[arg(long = "expr", value_name = "EXPR", allow_hyphen_values = true)]
     expression: Vec<String>,
     #[command(flatten)]

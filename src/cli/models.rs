@@ -26,21 +26,21 @@ pub(super) struct ModelArgs {
     /// Files to draw: .obj, .stl, .ply, .off, .gltf, .glb, .3mf; `-` is standard input
     #[arg(value_name = "MODEL", required = true)]
     models: Vec<PathBuf>,
-    /// Format of the models, regardless of their names
+    /// Format of the models, whatever their file names
     ///
-    /// Without it, the extension of each name decides, or else the content.
+    /// By default the format follows from the file extension, or else from the content.
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<ModelFormat>())]
     input_format: Option<ModelFormat>,
-    /// Axis that points up in the models [default: z, but y in glTF]
+    /// Axis that points up in the models [default: z; y for glTF]
     #[arg(long, value_name = "AXIS", value_parser = one_of::<UpAxis>(), allow_hyphen_values = true)]
     up_axis: Option<UpAxis>,
-    /// Factor for all coordinates; once for all models, or once for each, in order
+    /// Scale all coordinates by this factor; give it once for all models, or once per model in order
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
     scale: Vec<f64>,
-    /// Rotate by angles in degrees around x, then y, then z; once for all models, or once for each
+    /// Rotate around x, then y, then z, in degrees; give it once for all models, or once per model
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     rotate: Vec<DVec3>,
-    /// Move by this vector, after scaling and rotating; once for all models, or once for each
+    /// Move by this vector, after scaling and rotating; give it once for all models, or once per model
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vector)]
     #[arg(allow_hyphen_values = true)]
     move_by: Vec<DVec3>,

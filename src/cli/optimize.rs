@@ -47,7 +47,7 @@ pub(super) struct OptimizeArgs {
     /// Drop strokes shorter than this, and close strokes whose ends are closer than this
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     shortest_stroke: f64,
-    /// Let opaque fills hide the ink below them; a shape with a fill but no stroke only hides
+    /// Let opaque fills hide the ink below them; a filled shape without a stroke only hides
     #[arg(long)]
     occlude: bool,
     #[command(flatten)]
@@ -67,7 +67,7 @@ struct PlacingArgs {
     /// Center the drawing on the sheet
     #[arg(long)]
     center: bool,
-    /// Where ink is cropped; --margin counts for this and for --fit
+    /// Where to crop ink; --margin applies to this and to --fit
     #[arg(long, value_name = "WHERE", value_parser = one_of::<Crop>())]
     #[arg(default_value = Crop::Page.name())]
     crop: Crop,

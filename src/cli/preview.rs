@@ -37,7 +37,7 @@ Examples:
   hiddenline preview part.stl --view top --show depth -o heights.png
       Nearer is lighter.
   hiddenline preview part.stl --tone -o tone.png
-      How light each point is, as gray, for hatching.
+      The tone of each point as gray, for hatching.
   hiddenline preview --expr \"sin(r)/r\" --x=-9:9 --y=-9:9 -o hat.png
       A surface z = f(x, y).
   hiddenline preview --grid heights.tif --view isometric -o terrain.png
@@ -46,7 +46,7 @@ Examples:
 /// Samples of a surface along each axis, unless given: more than lines need, since faces are seen.
 const DEFAULT_SAMPLES: usize = 200;
 
-/// Make a shaded picture of models
+/// Render a shaded picture of models
 ///
 /// Takes the same models and the same camera as `draw`, and writes a PNG: a look before you plot. All
 /// engines show the same faces.
@@ -68,13 +68,13 @@ pub(super) struct PreviewArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     #[arg(help_heading = "Output")]
     threads: Option<u16>,
-    /// Print counts and times as JSON, the last line on standard error
+    /// Print counts and times as JSON, on the last line of standard error
     #[arg(long, help_heading = "Output")]
     stats: bool,
     /// Print nothing but errors
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
-    /// Use the preset called NAME from the configuration files
+    /// Use the preset NAME from the configuration files
     #[arg(long, value_name = "NAME", help_heading = "Output")]
     preset: Option<String>,
 }

@@ -58,11 +58,11 @@ pub enum HatchShadows {
     /// What faces away from the light, and what something else keeps the light from.
     #[default]
     Cast,
-    /// Only what faces away from the light.
+    /// Only faces turned away from the light.
     Own,
     /// None: tone falls off evenly all around.
     None,
-    /// Nothing but shadows, of both kinds.
+    /// Only shadows, of both kinds.
     Only,
 }
 
@@ -113,9 +113,9 @@ pub struct HatchOptions {
     pub cross: bool,
     /// How the spacing follows the tone.
     pub levels: HatchLevels,
-    /// Tones at least this light stay white, from 0 to 1.
+    /// Leave tones white that are at least this light, from 0 to 1.
     pub white: f64,
-    /// How much of the paper the ink covers in the darkest places, from 0 to 1.
+    /// Share of the paper that ink covers in the darkest places, from 0 to 1.
     pub black: f64,
     /// The tone of what no light reaches, from 0 to 1.
     pub ambient: f64,
@@ -246,7 +246,7 @@ pub struct HatchPage {
     pub mm_per_image_unit: f64,
     /// The lowest and the highest corner of what is between the margins, in image coordinates.
     pub window: (glam::DVec2, glam::DVec2),
-    /// Width of the pen's line as it is on paper.
+    /// Line width of the pen as it is on paper.
     pub pen_width_mm: f64,
 }
 

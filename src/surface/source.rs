@@ -102,10 +102,10 @@ pub enum FamilyError {
 /// What to do with heights outside the range of z.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Outside {
-    /// The surface is cut off.
+    /// Cut the surface off.
     #[default]
     Cut,
-    /// There are plateaus at the ends of the range.
+    /// Clamp heights to the range, which makes plateaus.
     Clamp,
 }
 

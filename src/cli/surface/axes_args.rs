@@ -13,30 +13,30 @@ pub(in crate::cli) struct AxesArgs {
     /// Axes around the surface [default: edges, but frame in top views]
     #[arg(long, value_enum, value_name = "STYLE")]
     axes: Option<StyleName>,
-    /// Leave out axes and titles, as --axes none does; implied by --exact
+    /// Leave out axes and titles, like --axes none; implied by --exact
     #[arg(long, conflicts_with_all = ["title", "axis_titles", "axes"])]
     no_axes: bool,
     /// Edges of --axes box in front of the surface
     #[arg(long, value_parser = one_of::<BoxFront>(), default_value = BoxFront::Dashed.name())]
     box_front: BoxFront,
-    /// Side of the drawing where the z axis is
+    /// Side of the drawing with the z axis
     #[arg(long, value_parser = one_of::<ZAxis>(), default_value = ZAxis::Left.name())]
     z_axis: ZAxis,
-    /// Distance between ticks, for each axis; `90,,` is for x alone
+    /// Tick spacing for each axis; `90,,` sets it for x only
     #[arg(long, value_name = "X,Y,Z", value_parser = steps)]
     tick_step: Option<Steps>,
-    /// Axes whose ticks are at multiples of π, written with π
+    /// Axes with ticks at multiples of π, labeled with π
     #[arg(long, value_enum, value_delimiter = ',', value_name = "AXES")]
     ticks_pi: Vec<AxisName>,
     /// Title above the drawing
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     title: Option<String>,
-    /// Titles of the axes; `s^{-1}` raises and `x_{0}` lowers letters, `\,` is a comma in a title
+    /// Axis titles; `s^{-1}` is superscript, `x_{0}` is subscript, and `\,` is a comma in a title
     #[arg(long, value_name = "X,Y,Z", default_value = "x,y,z", value_parser = axis_titles)]
     #[arg(allow_hyphen_values = true)]
     axis_titles: AxisTitles,
-    /// Height of numbers in millimeters, or a length such as 0.1in; titles are a little higher
-    /// [default: to suit the page and the pen]
+    /// Height of numbers in millimeters, or a length such as 0.1in; titles are slightly larger [default: to
+    /// suit the page and the pen]
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     text_height: Option<f64>,
 }

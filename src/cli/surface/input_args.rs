@@ -20,12 +20,12 @@ use crate::cli::values;
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 pub(in crate::cli) struct SurfaceInputArgs {
-    /// Heights from a file; `-` is standard input
+    /// Read heights from a file; `-` is standard input
     ///
     /// Rows of numbers, ESRI ASCII grid, NPY, NPZ, or a gray PNG or TIFF, recognized by content.
     #[arg(long, value_name = "FILE", conflicts_with = "expression")]
     grid: Option<PathBuf>,
-    /// Scattered points from a file with x, y and z on each line; `-` is standard input
+    /// Read scattered points from a file with x, y and z on each line; `-` is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["expression", "grid", "x", "y"])]
     points: Option<PathBuf>,
     /// Three formulas of u and v, for x, y and z
@@ -41,45 +41,45 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
     #[arg(requires = "parametric")]
     v: Option<(f64, f64)>,
-    /// Where the surface is, as a formula of x and y that is true there, such as x^2+y^2<=9
+    /// Domain of the surface, as a condition on x and y such as x^2+y^2<=9
     ///
-    /// The surface is cut along the border of this domain. `surface` draws the border with grid lines,
-    /// and by --lines border.
+    /// The surface is cut along the border of its domain. `surface` draws the border together with grid
+    /// lines, or with --lines border.
     #[arg(long = "where", value_name = "EXPR", requires = "expression")]
     domain: Option<String>,
-    /// Give a parameter of the formulas a value, as in a=2; can be given several times
+    /// Set a parameter of the formulas, as in a=2; may be repeated
     ///
-    /// The name is then a constant in all formulas and in --where. It must not be one that formulas
-    /// know already, such as x or pi.
+    /// The name is then a constant in all formulas and in --where. It must not be a name that formulas
+    /// already define, such as x or pi.
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["grid", "points"])]
     set: Vec<Parameter>,
-    /// Draw one sheet for each value of a parameter, as in a=1,2,3 or a=0:1:0.25; several multiply
+    /// Draw one sheet per value of a parameter, as in a=1,2,3 or a=0:1:0.25; repeat for all combinations
     ///
     /// a=FROM:TO:STEP takes evenly spaced values. The name is then a constant in all formulas and
-    /// conditions. In the names of sheets, {a} stands for its value. At most 32 sheets can be drawn.
+    /// conditions. In sheet names, {a} stands for the value. At most 32 sheets can be drawn.
     #[arg(long = "for", value_name = "NAME=VALUES", value_parser = parameter_list)]
     #[arg(allow_hyphen_values = true, conflicts_with_all = ["grid", "points", "parametric"])]
     for_each: Vec<ParameterList>,
-    /// Range of x; 5:-5 turns the axis around [default: -5:5, for a file 0 to columns - 1]
+    /// Range of x; 5:-5 reverses the axis [default: -5:5; for files, 0 to columns - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     x: Option<(f64, f64)>,
-    /// Range of y, as for x [default: -5:5, for a file 0 to rows - 1]
+    /// Range of y, as for x [default: -5:5; for files, 0 to rows - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     y: Option<(f64, f64)>,
-    /// Range of heights, as for x; the surface is cut off outside [default: all, but for poles]
+    /// Range of heights, as for x; the surface is cut off outside it [default: all, except at poles]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     z: Option<(f64, f64)>,
     /// What to do with heights outside --z
     #[arg(long, value_parser = one_of::<Outside>(), default_value = Outside::Cut.name())]
     z_outside: Outside,
-    /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]
+    /// Samples along each axis, or along x and along y [default: 81; for `preview`, 200]
     #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
     samples: Option<(usize, usize)>,
-    /// The first row of the file is the one with the largest y
+    /// The first row of the file has the largest y
     #[arg(long, requires = "grid", conflicts_with_all = ["expression", "points", "parametric"])]
     flip_y: bool,
-    /// This height in the file means no data; such samples are holes, such points are left out
+    /// Height that means no data in the file; such samples become holes, and such points are left out
     #[arg(long, value_name = "HEIGHT", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["expression", "parametric"])]
     nodata: Option<f64>,
@@ -87,18 +87,18 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_parser = one_of::<Duplicates>(), requires = "points")]
     #[arg(conflicts_with_all = ["expression", "grid", "parametric"])]
     duplicates: Option<Duplicates>,
-    /// Factor for all heights
+    /// Scale all heights by this factor
     #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(default_value_t = 1.0)]
     z_scale: f64,
-    /// Lengths of the box's edges: box, data, or proportions such as 4:4:3
+    /// Proportions of the box: box, data, or lengths such as 4:4:3
     ///
     /// box draws x and y to scale, and makes the box 0.4 times as high as the longer of the two; if one of
-    /// them is more than 5 times as long as the other, or logarithmic, both are equally long. data draws
-    /// all to scale. --z-scale applies on top. The default is box, but data with --parametric.
+    /// them is more than 5 times as long as the other, or logarithmic, both are equally long. data draws all
+    /// three to scale. --z-scale applies on top. The default is box, or data with --parametric.
     #[arg(long, value_name = "ASPECT", value_parser = aspect)]
     aspect: Option<Aspect>,
-    /// Logarithmic axes, such as x,z; formulas see true values
+    /// Logarithmic axes, such as x,z; formulas use the true values
     #[arg(long, value_enum, value_delimiter = ',', value_name = "AXES")]
     log: Vec<AxisName>,
 }

@@ -32,7 +32,7 @@ pub struct SurfaceLines {
     /// curves where there are no index lines, in views from above without grid lines, and for none in other
     /// drawings.
     pub labels: Option<Labels>,
-    /// Which way up labels are.
+    /// Orientation of labels.
     pub label_side: LabelSide,
     /// Height of the digits of labels, in millimeters; less where there is no room.
     pub label_height_mm: f64,
@@ -295,12 +295,12 @@ pub enum Labels {
     All,
 }
 
-/// Which way up labels are.
+/// Orientation of labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LabelSide {
-    /// To be read from below or from the right.
+    /// Read from the bottom or the right of the page.
     Upright,
-    /// With their tops uphill.
+    /// Tops point uphill.
     Uphill,
 }
 
