@@ -19,7 +19,7 @@ use crate::strokes::{StrokeKind, Strokes};
 /// a matter of millimeters. [`on`](Self::on) puts the drawing on paper;
 /// [`strokes`](Self::strokes) gives its polylines.
 #[derive(Debug, Clone)]
-#[must_use = "a drawing does nothing until it is put on paper"]
+#[must_use = "a drawing does nothing until you put it on paper"]
 pub struct Drawing<'a> {
     scene: &'a Scene,
     view: View,

@@ -92,7 +92,7 @@ impl HeightField {
 /// lines may be from its curves in millimeters. [`on`](Self::on) puts the drawing on paper;
 /// [`strokes`](Self::strokes) gives its polylines.
 #[derive(Debug, Clone)]
-#[must_use = "a drawing does nothing until it is put on paper"]
+#[must_use = "a drawing does nothing until you put it on paper"]
 pub struct SurfaceDrawing<'a> {
     surface: &'a Surface,
     view: View,

@@ -58,7 +58,7 @@ pub struct Camera {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum CameraError {
     /// A number is infinite or not a number.
-    #[error("the camera's numbers must be finite")]
+    #[error("camera values must be finite")]
     NotFinite,
     /// Eye and target coincide.
     #[error("eye and target are the same point")]

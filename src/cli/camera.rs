@@ -150,9 +150,9 @@ impl ViewSource {
 /// An error about the point of view, with the options that mend it.
 pub(super) fn with_remedy(error: &ViewError) -> String {
     let remedy = match error {
-        ViewError::Camera(CameraError::UpParallel) => "; give another --up",
+        ViewError::Camera(CameraError::UpParallel) => "; use another --up",
         ViewError::Camera(CameraError::NoDirection | CameraError::TooFarApart) => {
-            "; give another --eye or --target"
+            "; use another --eye or --target"
         }
         _ => "",
     };
@@ -171,7 +171,7 @@ fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
     let read = json::read_camera(&String::from_utf8_lossy(&bytes));
     Ok(read.map_err(|error| match error {
         ReadCameraError::Json(_) => {
-            format!("{}; give one written by --format json", failed(&error))
+            format!("{}; use a file written by --format json", failed(&error))
         }
         ReadCameraError::Camera(_) => failed(&error),
     })?)

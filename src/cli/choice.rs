@@ -89,7 +89,7 @@ choices! {
         Bsp "Far to near, by a tree of planes; for large models, and many views of one"
         Octree "Far to near, by a tree of boxes; for large models of small faces"
         Warnock "Windows of the image, divided until one face fills each; for few, large faces"
-        WeilerAtherton "Exact regions side by side, for cutters, engravers and inks; up to 10,000 faces"
+        WeilerAtherton "Exact regions side by side, for cutters, engravers, inks; up to 10,000 faces"
     }
     Format {
         Svg "Scalable Vector Graphics, for print and plotters"

@@ -243,7 +243,10 @@ fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
                 mm(drafted.dropped_mm)
             ),
         ),
-        (drafted.overlap_mm >= 0.5, format!("{} on other ink left out", mm(drafted.overlap_mm))),
+        (
+            drafted.overlap_mm >= 0.5,
+            format!("{} of overlapping ink left out", mm(drafted.overlap_mm)),
+        ),
         (drafted.thinned_mm >= 0.5, format!("{} thinned out", mm(drafted.thinned_mm))),
     ];
     let done: Vec<String> =
@@ -254,8 +257,8 @@ fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
     }
     if !is_thinned && drafted.crowded_share > CROWDED_SHARE {
         notes.hints.push(format!(
-            "{:.0} % of the ink has other ink beside it within a pen's width; --thin leaves room \
-             between lines",
+            "{:.0} % of the ink is within a pen width of other ink; --thin leaves room between \
+             lines",
             100.0 * drafted.crowded_share,
         ));
     }
@@ -271,15 +274,15 @@ fn why_empty(job: &Job, scene: &Scene, sheet: &PlacedPage, n_lines: usize) -> St
         let length = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
         let longest = with_all.iter().map(|stroke| length(stroke.points)).fold(0.0, f64::max);
         return format!(
-            "every stroke is shorter than --shortest-stroke {} mm, the longest {:.2e} mm; give a \
-             larger --drawing-scale, the model's unit by --unit, such as m, or a smaller \
+            "every stroke is shorter than --shortest-stroke {} mm, the longest {:.2e} mm; use a \
+             larger --drawing-scale, the model's unit, as in --unit m, or a smaller \
              --shortest-stroke",
             job.draw.shortest_stroke_mm,
             longest * mm_per_unit
         );
     }
     if n_lines == 0 && sheet.extent.corners().is_some() {
-        return "the model has no lines of the kinds selected; give other --lines".to_owned();
+        return "the model has no lines of the kinds selected; use other --lines".to_owned();
     }
     "nothing is in view".to_owned()
 }

@@ -62,7 +62,7 @@ fn create_beside(target: &Path, existing: Option<&fs::Metadata>) -> io::Result<N
     let file = builder.tempfile_in(&folder).map_err(|error| match missing_folder(target) {
         Some(folder) => io::Error::new(
             io::ErrorKind::NotFound,
-            format!("there is no folder {}", folder.display()),
+            format!("folder {} does not exist", folder.display()),
         ),
         None => error.kind().into(),
     })?;

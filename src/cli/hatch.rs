@@ -13,7 +13,7 @@ use super::{config, values};
 #[derive(Args)]
 #[command(next_help_heading = "Hatching")]
 pub(super) struct HatchArgs {
-    /// Hatch faces to shade them: with sections of the model (default), or straight lines on paper
+    /// Shade faces with hatch lines: sections of the model (default), or straight lines on paper
     #[arg(long, value_name = "METHOD", value_enum, num_args = 0..=1)]
     #[arg(default_missing_value = "sections")]
     hatch: Option<Method>,
@@ -192,13 +192,13 @@ impl HatchArgs {
 pub(super) fn with_remedy(error: &HatchError) -> String {
     match error {
         HatchError::Light(LightError::Inside(..)) => {
-            format!("{error}; give --light-at a point outside, or --light a direction")
+            format!("{error}; use --light-at with a point outside, or --light with a direction")
         }
         HatchError::Horizon => {
-            format!("{error}; give a --light with a positive z, or leave --ground out")
+            format!("{error}; use a --light with a positive z, or leave out --ground")
         }
         HatchError::TooMany(_) => {
-            format!("{error}: give a smaller --drawing-scale or a larger --pen-width")
+            format!("{error}: use a smaller --drawing-scale or a larger --pen-width")
         }
         _ => error.to_string(),
     }
@@ -215,7 +215,7 @@ fn levels(text: &str) -> Result<HatchLevels, String> {
         number => {
             let number = number.parse().ok().filter(|n| LEVELS.contains(n));
             number.map(HatchLevels::Steps).ok_or_else(|| {
-                "give halving, continuous, or a number of levels from 2 to 6".to_owned()
+                "expected halving, continuous, or a number of levels from 2 to 6".to_owned()
             })
         }
     }
@@ -227,7 +227,7 @@ fn ground(text: &str) -> Result<Ground, String> {
 
 /// A material as `brick=30:0.4`; angle or darkness may be left out.
 fn material(text: &str) -> Result<HatchMaterial, String> {
-    let example = || "give a material as in brick=30:0.4".to_owned();
+    let example = || "expected a material such as brick=30:0.4".to_owned();
     let (name, how) = text.rsplit_once('=').ok_or_else(example)?;
     let (angle, black) = how.split_once(':').unwrap_or((how, ""));
     let given = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());

@@ -79,7 +79,7 @@ const RULES: &[Rule] = &[
         option: "smoothness",
         commands: &["surface"],
         is_idle: |c| c.is_given("grid") || c.is_given("points"),
-        reason: "on samples from a file; it is for formulas",
+        reason: "on samples from a file; it applies to formulas",
     },
     Rule { option: "labels", commands: &["surface"], is_idle: is_exact, reason: EXACT },
     Rule { option: "label-side", commands: &["surface"], is_idle: is_exact, reason: EXACT },
@@ -175,7 +175,7 @@ const RULES: &[Rule] = &[
         option: "center",
         commands: &["optimize"],
         is_idle: |c| c.is_set("fit"),
-        reason: "with --fit, which centers the drawing, too",
+        reason: "with --fit, which also centers the drawing",
     },
 ];
 

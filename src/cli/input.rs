@@ -49,7 +49,7 @@ impl InputArgs {
         let files = self.model.files()?;
         if files.models.is_empty() {
             return Err(
-                "give models, or a surface by --expr, --grid, --points or --parametric".into()
+                "specify models, or a surface with --expr, --grid, --points or --parametric".into(),
             );
         }
         Ok(Input::Files(files))

@@ -208,7 +208,7 @@ fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
         Some(name) => command
             .find_subcommand(name)
             .cloned()
-            .ok_or_else(|| format!("there is no command `{name}`; see hiddenline --help"))?,
+            .ok_or_else(|| format!("unknown command `{name}`; see hiddenline --help"))?,
     };
     let mut page = Vec::new();
     clap_mangen::Man::new(chosen).render(&mut page)?;

@@ -219,7 +219,7 @@ fn output_format(typed: Option<Format>, path: Option<&Path>) -> Result<Format, S
             let known = Format::ALL.iter().flat_map(|format| format.extensions());
             let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
             let known = known.join(", ");
-            format!("`{}` has none of the extensions {known}; give --format", path.display())
+            format!("`{}` has none of the extensions {known}; use --format", path.display())
         }),
     }
 }

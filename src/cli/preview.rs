@@ -124,7 +124,7 @@ fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
         return Ok(());
     }
     let path = path.display();
-    Err(format!("`{path}` does not end in .png; a picture is written as PNG only").into())
+    Err(format!("`{path}` does not end in .png; pictures are written only as PNG").into())
 }
 
 /// Does the job; the error is a message for the user.
@@ -178,10 +178,10 @@ impl From<io::Error> for PictureError {
 /// What went wrong and how to mend it.
 fn with_remedy(error: &PreviewError) -> String {
     match error {
-        PreviewError::NoOrder(_) => format!("{error}; take --engine z-buffer"),
-        PreviewError::NoFieldOfView => format!("{error}; give --projection perspective"),
+        PreviewError::NoOrder(_) => format!("{error}; use --engine z-buffer"),
+        PreviewError::NoFieldOfView => format!("{error}; use --projection perspective"),
         PreviewError::Light(LightError::Inside(..)) => {
-            format!("{error}; give --light-at a point outside, or --light a direction")
+            format!("{error}; use --light-at with a point outside, or --light with a direction")
         }
         PreviewError::Size(..) | PreviewError::Light(_) | PreviewError::Write(_) => {
             error.to_string()

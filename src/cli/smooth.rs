@@ -87,7 +87,7 @@ impl Smoothing {
         }
         if smoothed.is_cut_short {
             notes.warnings.push(format!(
-                "smoothing ended at {after} triangles, {:.2} mm from the curved surface; give a \
+                "smoothing ended at {after} triangles, {:.2} mm from the curved surface; use a \
                  larger --smooth-tolerance",
                 smoothed.farthest * scale
             ));

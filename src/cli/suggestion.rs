@@ -9,9 +9,9 @@ pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -
     let near = near(name, &known);
     let known = known.join(", ");
     if near.is_empty() {
-        format!("; there are {known}")
+        format!("; choose from {known}")
     } else {
-        format!("; did you mean {}? There are {known}", near.join(" or "))
+        format!("; did you mean {}? Choose from {known}", near.join(" or "))
     }
 }
 

@@ -177,7 +177,7 @@ pub enum MeshError {
         n_vertices: usize,
     },
     /// A merge distance that is negative, infinite or not a number.
-    #[error("the distance to merge vertices within is {distance}; it must be finite and 0 or more")]
+    #[error("the distance for merging vertices must be finite and 0 or more, not {distance}")]
     BadDistance {
         /// The distance as given, in model units.
         distance: f64,

@@ -36,11 +36,11 @@ const NAMED: [(&str, f64, f64); 10] = [
 pub enum PaperError {
     /// Neither a name nor two lengths.
     #[error(
-        "`{0}` is not a paper size: give a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm"
+        "`{0}` is not a paper size: use a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm"
     )]
     Unknown(String),
     /// Not a number with a unit.
-    #[error("`{0}` is not a length: give a number, and mm, cm or in if it is not in millimeters")]
+    #[error("`{0}` is not a length: use a number, with mm, cm or in unless it is in millimeters")]
     Length(String),
     /// Zero, negative, or beyond any paper.
     #[error("`{0}`: width and height must be above 0 and at most 100 m")]

@@ -53,8 +53,8 @@ pub enum Fault {
     LfsPointer,
     /// A STEP file, which holds curved surfaces.
     #[error(
-        "STEP files are not read; make a GLB of it in FreeCAD, or in Python (pip install cascadio): \
-         cascadio.step_to_glb(\"part.step\", \"part.glb\", 0.05, 0.2)"
+        "STEP files are not supported; convert them to GLB in FreeCAD, or in Python (pip install \
+         cascadio): cascadio.step_to_glb(\"part.step\", \"part.glb\", 0.05, 0.2)"
     )]
     Step,
     /// Zero bytes.
@@ -69,7 +69,7 @@ pub enum Fault {
         degenerate: usize,
     },
     /// A file in a text format holds bytes that are not text, and no face.
-    #[error("this is not {0} text; check the file, or give its format")]
+    #[error("this is not {0} text; check the file, or specify its format")]
     NotText(&'static str),
     /// A word that should be a number.
     #[error("`{0}` is not a decimal number; correct it or export the model again")]
@@ -99,7 +99,7 @@ pub enum Fault {
     #[error("`{0}` is not the number of a vertex; correct it or export the model again")]
     BadIndex(String),
     /// Vertex 0 in a format that counts from 1.
-    #[error("there is no vertex 0, OBJ counts from 1; correct it or export the model again")]
+    #[error("there is no vertex 0; OBJ counts from 1; correct it or export the model again")]
     ZeroIndex,
     /// A face uses a vertex that does not exist.
     #[error("{}", missing_vertex(.index, *.vertices))]
@@ -153,13 +153,13 @@ pub enum Fault {
     RequiredExtension(String),
     /// A glTF buffer lies elsewhere than in the model's folder.
     #[error(
-        "its buffer `{0}` is not in the model's folder, and no other place is read; \
-         put it there, or export the model as .glb"
+        "its buffer `{0}` is not in the model's folder, and no other folder is read; put it \
+         there, or export the model as .glb"
     )]
     BufferElsewhere(String),
     /// A glTF buffer is a file, but the model came without a folder, as from standard input.
     #[error(
-        "its buffer `{0}` is a file of its own; give the model by its name, or export it as .glb"
+        "its buffer `{0}` is a separate file; pass the model by file name, or export it as .glb"
     )]
     BufferWithoutFolder(String),
     /// A glTF buffer's file cannot be read.

@@ -78,7 +78,7 @@ pub enum GridError {
         found: usize,
     },
     /// More than [`MAX_SAMPLES`].
-    #[error("{x} × {y} samples are more than {MAX_SAMPLES}")]
+    #[error("{x} × {y} samples exceed the limit of {MAX_SAMPLES}")]
     TooMany {
         /// Along x.
         x: usize,

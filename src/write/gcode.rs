@@ -87,7 +87,7 @@ impl Unit {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GcodeError {
     /// No such profile.
-    #[error("unknown G-code profile {name:?}; known are {known}")]
+    #[error("unknown G-code profile {name:?}; choose from {known}")]
     UnknownProfile {
         /// The name asked for.
         name: String,
@@ -95,7 +95,7 @@ pub enum GcodeError {
         known: String,
     },
     /// A template has a placeholder that does not exist.
-    #[error("template {template}: unknown placeholder {{{placeholder}}}; known are {known}")]
+    #[error("template {template}: unknown placeholder {{{placeholder}}}; choose from {known}")]
     UnknownPlaceholder {
         /// The template's name.
         template: &'static str,

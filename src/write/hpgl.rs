@@ -97,7 +97,7 @@ pub struct LoadedPlotter {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlotterError {
     /// No such plotter.
-    #[error("unknown plotter {name:?}; known are {known}")]
+    #[error("unknown plotter {name:?}; choose from {known}")]
     UnknownMachine {
         /// The name asked for.
         name: String,
@@ -105,7 +105,7 @@ pub enum PlotterError {
         known: String,
     },
     /// No such paper.
-    #[error("{machine} takes no paper called {name:?}; it takes {known}")]
+    #[error("{machine} has no paper called {name:?}; choose from {known}")]
     UnknownPaper {
         /// The plotter.
         machine: String,
@@ -115,7 +115,7 @@ pub enum PlotterError {
         known: String,
     },
     /// No paper as large as the page.
-    #[error("{machine} takes no paper of {width_mm} × {height_mm} mm; it takes {known}")]
+    #[error("{machine} does not take paper of {width_mm} × {height_mm} mm; choose from {known}")]
     NoPaperOfSize {
         /// The plotter.
         machine: String,

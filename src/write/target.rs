@@ -44,7 +44,7 @@ pub enum WriteError {
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The format was left out when the crate was built.
-    #[error("this build cannot write {}; turn on the crate's feature for it", .0.name())]
+    #[error("this build cannot write {}; enable its feature of the crate", .0.name())]
     FormatOff(Format),
     /// Strokes as JSON hold more than a plot does.
     #[error("JSON holds strokes in image coordinates, which a sheet no longer has")]
@@ -54,7 +54,7 @@ pub enum WriteError {
     NoFills(#[from] NoFills),
     /// No plotter and no G-code profile has this name.
     #[cfg(feature = "plotters")]
-    #[error("there is no machine called `{name}`; known are {known}")]
+    #[error("unknown machine `{name}`; choose from {known}")]
     UnknownMachine {
         /// The name asked for.
         name: String,

@@ -166,7 +166,7 @@ impl ManyArgs {
         let template = if has_frames { template.map(NameTemplate::numbered) } else { template };
         if n_all > 1 && template.is_none() {
             return Err(
-                "several drawings need names; give -o, as in -o 'out/{stem}-{index:03}.svg'".into(),
+                "several drawings need names; use -o, as in -o 'out/{stem}-{index:03}.svg'".into(),
             );
         }
         let inputs: HashSet<PathBuf> =
@@ -182,8 +182,8 @@ impl ManyArgs {
                 let path = template.as_ref().map(|t| t.name(model.unwrap_or(Path::new("")), index));
                 if let Some(path) = path.as_ref().filter(|path| !names.insert((*path).clone())) {
                     return Err(format!(
-                        "several drawings would be written to {}; give a name with {{stem}}, {{dir}} \
-                         or {{index}}, as in -o 'out/{{stem}}-{{index:03}}.svg'",
+                        "several drawings would be written to {}; use a name with {{stem}}, \
+                         {{dir}} or {{index}}, as in -o 'out/{{stem}}-{{index:03}}.svg'",
                         path.display()
                     )
                     .into());
@@ -195,7 +195,8 @@ impl ManyArgs {
                 if let Some(path) = path.as_ref().filter(|path| is_input(path)) {
                     return Err(Refused::Failed(
                         format!(
-                            "cannot write {}: it is read from and would be replaced; give another -o",
+                            "cannot write {}: it is an input file and would be replaced; use \
+                             another -o",
                             path.display()
                         )
                         .into(),
@@ -320,7 +321,7 @@ impl Tally {
             }
             n if many.keeps_going => Err(format!("{n_drawn} drawn, {n} failed{skipped}").into()),
             n => Err(format!(
-                "{n_drawn} drawn, {n} failed{skipped}; --keep-going draws the rest all the same"
+                "{n_drawn} drawn, {n} failed{skipped}; --keep-going draws the rest anyway"
             )
             .into()),
         }

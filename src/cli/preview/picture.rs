@@ -109,7 +109,7 @@ impl PictureArgs {
         }
         let shows_numbers = matches!(self.show, Show::Faces);
         if shows_numbers && self.engine == EngineName::ABuffer {
-            return Err("colors of faces cannot be mixed; give another --engine".into());
+            return Err("face colors cannot be mixed; use another --engine".into());
         }
         let pixels = match self.engine {
             EngineName::ABuffer => Pixels::Shares { opacity: self.opacity.unwrap_or(1.0) },

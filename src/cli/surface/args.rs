@@ -206,7 +206,7 @@ fn levels(text: &str) -> Result<Levels, String> {
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|k| *k > 0).ok_or_else(|| "give a whole number above 0".to_owned())
+    text.parse().ok().filter(|k| *k > 0).ok_or_else(|| "expected a whole number above 0".to_owned())
 }
 
 impl SurfaceArgs {
@@ -217,7 +217,7 @@ impl SurfaceArgs {
         let texts = surface.expression.into_iter().chain(surface.more);
         let texts: Vec<String> = texts.map(|text| text.trim().to_owned()).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
-        let mut sheets = sheets.ok_or("give a formula")?;
+        let mut sheets = sheets.ok_or("a formula is missing")?;
         let default_line = match sheets.input {
             SurfaceSource::Points(_) => LineName::Mesh,
             _ => LineName::Both,
@@ -231,10 +231,10 @@ impl SurfaceArgs {
         let only_grid_lines =
             named.iter().all(|n| matches!(n, LineName::X | LineName::Y | LineName::Both));
         if matches!(sheets.input, SurfaceSource::Points(_)) && (along_x || along_y) {
-            return Err("scattered points have no grid lines: give --lines mesh or levels".into());
+            return Err("scattered points have no grid lines: use --lines mesh or levels".into());
         }
         if lines.levels.is_some() && !has(LineName::Levels) {
-            return Err("--levels is for level curves: give --lines levels, too".into());
+            return Err("--levels is for level curves: add levels to --lines".into());
         }
         if !has(LineName::Levels)
             && (lines.index_every.is_some()
@@ -243,8 +243,8 @@ impl SurfaceArgs {
                 || lines.negative == Negative::Dashed)
         {
             return Err(
-                "--index-every, --project, --labels and --negative are for level curves: give \
-                 --lines levels, too"
+                "--index-every, --project, --labels and --negative are for level curves: add \
+                 levels to --lines"
                     .into(),
             );
         }
@@ -263,19 +263,19 @@ impl SurfaceArgs {
         match lines.engine {
             SurfaceEngine::FloatingHorizon if along_x == along_y || !only_grid_lines => {
                 return Err(
-                    "the floating horizon draws one family: give --lines x or --lines y".into()
+                    "the floating horizon draws one family: use --lines x or --lines y".into()
                 );
             }
             SurfaceEngine::FloatingHorizon if !is_grid => {
                 return Err(
                     "the floating horizon draws one surface z = f(x, y) over a rectangle: \
-                            give --engine roberts or auto"
+                            use --engine roberts or auto"
                         .into(),
                 );
             }
             SurfaceEngine::MaxMin if !one_sheet && !two_sheets => {
                 return Err("max-min draws one surface z = f(x, y), or two that meet along their \
-                            border: give --engine roberts or auto"
+                            border: use --engine roberts or auto"
                     .into());
             }
             SurfaceEngine::FloatingHorizon | SurfaceEngine::Roberts | SurfaceEngine::Appel

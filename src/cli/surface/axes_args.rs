@@ -67,9 +67,9 @@ struct Steps([Option<f64>; 3]);
 
 /// Three titles with commas between them; `\,` is a comma in a title.
 fn axis_titles(text: &str) -> Result<AxisTitles, String> {
-    let titles = values::with_commas(text).try_into().map_err(|_| {
-        "give three titles of axes with commas between them; a comma in a title is written `\\,`"
-    })?;
+    let titles = values::with_commas(text).try_into().map_err(
+        |_| "expected three axis titles separated by commas; a comma in a title is written `\\,`",
+    )?;
     Ok(AxisTitles(titles))
 }
 
@@ -80,7 +80,8 @@ fn steps(text: &str) -> Result<Steps, String> {
         text => values::positive(text).map(Some),
     };
     let steps: Vec<Option<f64>> = text.split(',').map(step).collect::<Result<_, _>>()?;
-    let steps = steps.try_into().map_err(|_| "give three steps with commas, as in 90,,")?;
+    let steps =
+        steps.try_into().map_err(|_| "expected three steps separated by commas, as in 90,,")?;
     Ok(Steps(steps))
 }
 
@@ -90,7 +91,7 @@ impl AxesArgs {
         let style = match self.axes {
             _ if self.no_axes => return Ok(None),
             Some(StyleName::None) if self.title.is_some() => {
-                return Err("--axes none leaves out the title, too: give other --axes".into());
+                return Err("--axes none also leaves out the title: use other --axes".into());
             }
             Some(StyleName::None) => return Ok(None),
             Some(StyleName::Edges) => Some(AxesStyle::Edges),

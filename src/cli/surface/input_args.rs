@@ -146,13 +146,13 @@ impl SurfaceInputArgs {
         } else if let Some(texts) = self.parametric {
             default_aspect = Aspect::Data;
             let formulas = parsed(&texts, Variables::Parameters, &parameters)?;
-            let formulas = formulas.try_into().map_err(|_| "give three formulas")?;
+            let formulas = formulas.try_into().map_err(|_| "expected three formulas")?;
             let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
             SurfaceSource::Parametric { formulas: Box::new(formulas), u, v, samples }
         } else if !texts.is_empty() {
             if texts.len() * combinations.len() > MAX_VALUES && !lists.is_empty() {
                 let n = texts.len() * combinations.len();
-                return Err(format!("--for makes {n} sheets; {MAX_VALUES} are the most"));
+                return Err(format!("--for makes {n} sheets; the limit is {MAX_VALUES}"));
             }
             let mut by_values = Vec::new();
             for parameters in &combinations {
@@ -188,8 +188,8 @@ impl SurfaceInputArgs {
                 || !lists.is_empty()
             {
                 return Err(
-                    "--x, --y, --z, --set, --for, --samples, --z-scale, --aspect and --log are for \
-                     surfaces: give --expr, --grid, --points or --parametric"
+                    "--x, --y, --z, --set, --for, --samples, --z-scale, --aspect and --log are \
+                     for surfaces: use --expr, --grid, --points or --parametric"
                         .into(),
                 );
             }
@@ -244,13 +244,13 @@ fn constant(text: &str) -> Result<f64, String> {
 
 /// A parameter of formulas as `a=2`; the value may be a formula such as `2*pi`.
 fn parameter(text: &str) -> Result<Parameter, String> {
-    let (name, value) = text.split_once('=').ok_or("give a name and a value, as in a=2")?;
+    let (name, value) = text.split_once('=').ok_or("expected a name and a value, as in a=2")?;
     Parameter::new(name.trim(), constant(value.trim())?).map_err(|error| error.to_string())
 }
 
 /// A parameter with its values as `a=1,2,3` or `a=0:1:0.25`; they may be formulas such as `pi/2`.
 fn parameter_list(text: &str) -> Result<ParameterList, String> {
-    let (name, values) = text.split_once('=').ok_or("give a name and values, as in a=1,2,3")?;
+    let (name, values) = text.split_once('=').ok_or("expected a name and values, as in a=1,2,3")?;
     let name = name.trim();
     let list = match values.split(':').collect::<Vec<_>>()[..] {
         [values] => {
@@ -266,7 +266,11 @@ fn parameter_list(text: &str) -> Result<ParameterList, String> {
         [from, to, step] => {
             ParameterList::evenly(name, constant(from)?, constant(to)?, constant(step)?)
         }
-        _ => return Err("give values as in a=1,2,3, or from, to and step as in a=0:1:0.25".into()),
+        _ => {
+            return Err(
+                "expected values as in a=1,2,3, or from, to and step as in a=0:1:0.25".into()
+            );
+        }
     };
     list.map_err(|error| error.to_string())
 }
@@ -297,7 +301,7 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 
 /// Two different numbers with a colon between them.
 fn either_way(text: &str) -> Result<(f64, f64), String> {
-    let (from, to) = text.split_once(':').ok_or("give two numbers, as in -2:2")?;
+    let (from, to) = text.split_once(':').ok_or("expected two numbers, as in -2:2")?;
     let (from, to) = (constant(from)?, constant(to)?);
     if from != to { Ok((from, to)) } else { Err("the two numbers must be different".into()) }
 }
@@ -312,7 +316,7 @@ fn aspect(text: &str) -> Result<Aspect, String> {
             let lengths = lengths.ok().and_then(|lengths| lengths.try_into().ok());
             lengths
                 .map(Aspect::Lengths)
-                .ok_or_else(|| "give box, data, or three lengths, as in 4:4:3".to_owned())
+                .ok_or_else(|| "expected box, data, or three lengths, as in 4:4:3".to_owned())
         }
     }
 }
@@ -320,13 +324,13 @@ fn aspect(text: &str) -> Result<Aspect, String> {
 /// Numbers of samples along x and y.
 fn samples(text: &str) -> Result<(usize, usize), String> {
     let number = |text: &str| {
-        let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
+        let n = text.trim().parse::<usize>().map_err(|_| "expected a number, as in 80 or 80x60")?;
         if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }
     };
     let (x, y) = text.split_once('x').unwrap_or((text, text));
     let (x, y) = (number(x)?, number(y)?);
     if x.checked_mul(y).is_none_or(|n| n > MAX_SAMPLES) {
-        return Err(format!("{x} × {y} samples are more than {MAX_SAMPLES}"));
+        return Err(format!("{x} × {y} samples exceed the limit of {MAX_SAMPLES}"));
     }
     Ok((x, y))
 }

@@ -276,7 +276,7 @@ impl Studio {
             match given {
                 None => all.extend(typed),
                 Some(Value::Object(given)) => all.extend(given.clone()),
-                Some(_) => return Err(Fault::of("`camera` and `options` are objects")),
+                Some(_) => return Err(Fault::of("`camera` and `options` must be objects")),
             }
         }
         if asked.camera.is_some() {

@@ -109,7 +109,7 @@ pub enum FaceError {
         most: u64,
     },
     /// The leaves are too small.
-    #[error("{n:.0} leaves are too many; {most:.0} are the most")]
+    #[error("{n:.0} leaves are too many; the limit is {most:.0}")]
     TooManyLeaves {
         /// How many there are.
         n: f64,

@@ -20,10 +20,10 @@ pub struct Parameter {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ParameterError {
     /// Not letters and digits that begin with a letter.
-    #[error("`{0}` cannot name a parameter; take letters and digits that begin with a letter")]
+    #[error("`{0}` cannot name a parameter; use letters and digits, starting with a letter")]
     Name(String),
     /// A variable, constant, function or operator.
-    #[error("`{0}` has a meaning in formulas already; take another name")]
+    #[error("`{0}` already has a meaning in formulas; use another name")]
     Taken(String),
     /// Infinite, or not a number.
     #[error("the value of `{0}` must be finite")]

@@ -176,7 +176,7 @@ pub enum HeightError {
     #[error(transparent)]
     FeatureOff(#[from] FeatureOff),
     /// A picture with more than one channel.
-    #[error("a height map must be a gray picture; this one has colors")]
+    #[error("a height map must be a gray picture; this one is in color")]
     Colors,
     /// Numbers that do not form a grid.
     #[error(transparent)]
