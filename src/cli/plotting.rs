@@ -173,7 +173,7 @@ impl Plotting {
         let roles: Vec<PenRole> = self.pens.iter().map(|pen| pen.drawn).collect();
         let idle = idle_pens(&roles, strokes).into_iter();
         let idle = idle.filter(|role| has_hidden || !role.is_hidden());
-        idle.map(|role| format!("--pen {}=… draws nothing: no stroke is left for it", role.name()))
+        idle.map(|role| format!("--pen {}=… draws nothing: no strokes use it", role.name()))
             .collect()
     }
 

@@ -301,7 +301,7 @@ fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
     pen_roles().find(|drawn| drawn.name() == name).ok_or_else(|| {
         let names: Vec<_> = pen_roles().map(PenRole::name).collect();
         let names = names.iter().map(AsRef::as_ref);
-        format!("no pen draws `{name}`{}", suggestion(name, names))
+        format!("unknown line kind `{name}`{}", suggestion(name, names))
     })
 }
 

@@ -1,6 +1,6 @@
 // Requests to the server, and what its answers hold.
 
-/** An answer of the server that is no drawing. */
+/** An answer from the server that is not a drawing. */
 class Fault extends Error {
   constructor(status, about) {
     super(about.error ?? `the server answered ${status}`);
@@ -24,7 +24,7 @@ class Server {
       answer = await fetch(path, { method, headers, body, signal, cache: "no-store" });
     } catch (error) {
       if (error.name === "AbortError") throw error;
-      throw new Fault(0, { error: "hiddenline has ended; start it again and open the address it prints" });
+      throw new Fault(0, { error: "hiddenline has stopped; start it again and open the address it prints" });
     }
     if (!answer.ok) {
       const about = await answer.json().catch(() => ({}));
