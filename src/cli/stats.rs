@@ -53,13 +53,13 @@ pub(super) struct Certified {
     bound_mm: f64,
     /// Chords of drawn lines.
     lines: usize,
-    /// Those of them that are not certified.
+    /// How many of these are not certified.
     uncertified_lines: usize,
     /// Cells between lines.
     cells: usize,
-    /// Those of them that are not certified.
+    /// How many of these are not certified.
     uncertified_cells: usize,
-    /// Places of drawn lines at which the surface is torn open.
+    /// Places on drawn lines where the surface is torn open.
     tears: usize,
     /// How often formulas were enclosed.
     jets: usize,

@@ -305,7 +305,7 @@ impl Ink {
     }
 }
 
-/// Which level curves are labelled.
+/// Which level curves are labeled.
 fn labels(lines: &SurfaceLines, levels: &LevelSet, camera: &Camera) -> Labels {
     let is_level = lines.levels.is_some() && !lines.exact;
     match lines.labels {

@@ -6,24 +6,23 @@ use thiserror::Error;
 use crate::page::Page;
 use crate::shading::light::{AMBIENT, LightError, LightSource};
 
-/// Tones at least this light stay white, unless set otherwise.
+/// By default, tones at least this light stay white.
 pub const DEFAULT_WHITE: f64 = 0.85;
 
-/// How much of the paper the ink covers in the darkest places, unless set otherwise. More makes a gray
-/// mush and wets the paper.
+/// The default share of the paper that ink covers in the darkest places. More gives a muddy gray and soaks
+/// the paper.
 pub const DEFAULT_BLACK: f64 = 0.6;
 
-/// Hatch strokes are at least this long in millimeters, unless set otherwise or the pen is wide.
+/// The default length of the shortest hatch stroke in millimeters, unless the pen is wide.
 pub const DEFAULT_SHORTEST_HATCH_MM: f64 = 1.0;
 
-/// White margin beside nearer outlines in millimeters, unless set otherwise.
+/// The default white margin beside nearer outlines in millimeters.
 pub const DEFAULT_HATCH_GAP_MM: f64 = 0.5;
 
-/// Faces that meet at this angle in degrees or less are shaded as one curved surface, unless set
-/// otherwise.
+/// By default, faces that meet at this angle in degrees or less are shaded as one curved surface.
 pub const DEFAULT_SMOOTH_DEG: f64 = 30.0;
 
-/// Most families of lines.
+/// The maximum number of families of lines.
 pub const MOST_FAMILIES: usize = 8;
 
 /// Fewest and most levels of darkness; see [`HatchLevels::Steps`].
@@ -32,7 +31,7 @@ pub const LEVELS: std::ops::RangeInclusive<u32> = 2..=6;
 /// What hatch lines are.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HatchMethod {
-    /// Parallel planes in space cut through the model, so that lines wrap its form.
+    /// Parallel planes in space cut through the model, so lines wrap around its form.
     #[default]
     Sections,
     /// Parallel lines on paper.
@@ -42,20 +41,19 @@ pub enum HatchMethod {
 /// How the spacing of lines follows the tone.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HatchLevels {
-    /// Every second line ends where half of the ink will do. Darkness is right to a factor of √2.
+    /// Every second line ends where half the ink is enough. Darkness is right to a factor of √2.
     #[default]
     Halving,
     /// The same, with darkness rounded to this many steps first; for flat faces.
     Steps(u32),
-    /// One line after the other ends, so that the mean darkness is right everywhere; even tones look
-    /// striped.
+    /// Lines end one after another, so the mean darkness is right everywhere; even tones look striped.
     Continuous,
 }
 
 /// Which shadows are hatched.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HatchShadows {
-    /// What faces away from the light, and what something else keeps the light from.
+    /// Faces turned away from the light, and shadows cast by other faces.
     #[default]
     Cast,
     /// Only faces turned away from the light.
@@ -86,7 +84,7 @@ pub struct HatchMaterial {
     pub black: Option<f64>,
 }
 
-/// What is hatched, and how.
+/// What to hatch, and how.
 ///
 /// ```
 /// use hiddenline::{Ground, HatchOptions, LightSource};

@@ -70,7 +70,7 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// Combines meshes into one, each in its place. A single mesh that is neither moved nor merged stays
+    /// Combines meshes into one, each in its pose. A single mesh that is neither moved nor merged stays
     /// bit for bit the same.
     ///
     /// The rotation of a mesh is one matrix, applied once; quarter turns are exact. Vertices of

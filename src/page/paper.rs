@@ -13,7 +13,7 @@ pub struct Paper {
     pub width_mm: f64,
     /// From top to bottom.
     pub height_mm: f64,
-    /// Name of the size; `None` for one given in numbers, which is never turned unasked.
+    /// Name of the size; `None` for a size given in numbers, which is not turned to suit the drawing.
     pub name: Option<&'static str>,
 }
 
@@ -42,7 +42,7 @@ pub enum PaperError {
     /// Not a number with a unit.
     #[error("`{0}` is not a length: use a number, with mm, cm or in unless it is in millimeters")]
     Length(String),
-    /// Zero, negative, or beyond any paper.
+    /// Zero, negative, or larger than any paper.
     #[error("`{0}`: width and height must be above 0 and at most 100 m")]
     Size(String),
 }
@@ -68,7 +68,7 @@ impl Paper {
         Self { width_mm, height_mm, name: None }
     }
 
-    /// The sheet as it is to lie.
+    /// The sheet in the requested or suitable orientation.
     pub(super) fn turned(self, asked: Option<Orientation>, suits: Orientation) -> Self {
         let orientation = match (asked, self.name) {
             (Some(orientation), _) => orientation,

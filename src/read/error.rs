@@ -11,7 +11,7 @@ use crate::model::mesh::MeshError;
 /// Displays as one line, `file:line: what is wrong; how to fix it`.
 #[derive(Debug, Error)]
 pub struct ReadError {
-    /// Name of the file as it was given.
+    /// File name as given.
     pub name: String,
     /// Line in the file, counted from 1; `None` where no line is known.
     pub line: Option<usize>,
@@ -48,7 +48,7 @@ pub enum Fault {
     /// A web page in place of a model.
     #[error("this is a web page, not a model; download the file itself")]
     WebPage,
-    /// What Git Large File Storage leaves in place of a file.
+    /// A Git Large File Storage pointer in place of a file.
     #[error("this is a Git LFS pointer, not a model; fetch the file with `git lfs pull`")]
     LfsPointer,
     /// A STEP file, which holds curved surfaces.
@@ -60,7 +60,7 @@ pub enum Fault {
     /// Zero bytes.
     #[error("the file is empty; export the model again")]
     Empty,
-    /// Nothing that could be drawn is left.
+    /// Nothing to draw is left.
     #[error("{}", no_faces(*.vertices, *.degenerate))]
     NoFaces {
         /// Vertices that were read.
@@ -133,25 +133,25 @@ pub enum Fault {
         /// What to do instead.
         remedy: &'static str,
     },
-    /// The format is left out of this build.
+    /// The format is not in this build.
     #[error(transparent)]
     FeatureOff(#[from] FeatureOff),
     /// A message of a parsing library.
     #[error("{0}; correct the file or export the model again")]
     Parser(String),
-    /// The faces do not make a mesh.
+    /// The faces do not form a valid mesh.
     #[error("{0}; export the model again")]
     Mesh(#[from] MeshError),
     /// The JSON of a glTF file, or what it refers to, is wrong.
     #[error("this is not valid glTF 2.0: {0}; export the model again")]
     Gltf(String),
-    /// A glTF file demands an extension that is not supported; compression, mostly.
+    /// A glTF file requires an unsupported extension, usually compression.
     #[error(
         "it requires the glTF extension {0}; write it without: \
          gltf-transform copy model.glb plain.glb (npm install --global @gltf-transform/cli)"
     )]
     RequiredExtension(String),
-    /// A glTF buffer lies elsewhere than in the model's folder.
+    /// A glTF buffer is not in the model's folder.
     #[error(
         "its buffer `{0}` is not in the model's folder, and no other folder is read; put it \
          there, or export the model as .glb"
@@ -206,13 +206,13 @@ fn missing_vertex(index: &str, vertices: usize) -> String {
     format!("a face uses vertex {index}, but {there_are}; correct it or export the model again")
 }
 
-/// A format that this build leaves out.
+/// A format that is not in this build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("this build cannot read {format}; build it with the feature `{feature}`")]
 pub struct FeatureOff {
     /// The format's usual name.
     pub format: &'static str,
-    /// The feature of this crate that brings it.
+    /// The feature of this crate that adds it.
     pub feature: &'static str,
 }
 

@@ -271,7 +271,7 @@ impl Surface {
     /// its heights are drawn to the scale of x and y.
     ///
     /// # Errors
-    /// A text is not a formula.
+    /// A text is not a valid formula.
     pub fn parametric(
         texts: [&str; 3],
         u: (f64, f64),

@@ -22,7 +22,7 @@ pub enum SurfaceError {
     /// The surface cannot be sampled.
     #[error(transparent)]
     Sampling(#[from] SamplingError),
-    /// The view makes no camera.
+    /// The view is not a valid camera.
     #[error(transparent)]
     View(#[from] ViewError),
     /// The drawing cannot be placed on the page.

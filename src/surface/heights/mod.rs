@@ -172,7 +172,7 @@ pub enum HeightError {
     #[cfg(feature = "tiff")]
     #[error("TIFF: {0}")]
     Tiff(#[from] ::tiff::TiffError),
-    /// The format is left out of this build.
+    /// The format is not in this build.
     #[error(transparent)]
     FeatureOff(#[from] FeatureOff),
     /// A picture with more than one channel.
