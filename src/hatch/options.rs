@@ -58,13 +58,13 @@ pub enum HatchShadows {
     Cast,
     /// Only faces turned away from the light.
     Own,
-    /// None: tone falls off evenly all around.
+    /// No shadows: tone falls off evenly on all sides.
     None,
     /// Only shadows, of both kinds.
     Only,
 }
 
-/// A horizontal plane that takes shadows.
+/// A horizontal plane that catches shadows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ground {
     /// At the lowest point of the scene.
@@ -80,7 +80,7 @@ pub struct HatchMaterial {
     pub name: String,
     /// The angle of the first family of lines in degrees; others turn with it.
     pub angle_deg: Option<f64>,
-    /// How much of the paper the ink covers in the darkest places.
+    /// Share of the paper that ink covers in the darkest places.
     pub black: Option<f64>,
 }
 
@@ -101,13 +101,13 @@ pub struct HatchOptions {
     pub method: HatchMethod,
     /// Where the light comes from.
     pub light: LightSource,
-    /// The angle on paper of each family of lines in degrees, counter-clockwise from the right, on
-    /// faces that are square to the viewer; empty for the usual one.
+    /// The angle on paper of each family of lines in degrees, counter-clockwise from the right, on faces that
+    /// are square to the viewer; empty for the default.
     pub angles_deg: Vec<f64>,
-    /// The normal of the planes of [`HatchMethod::Sections`]; `None` for up, turned a little towards
-    /// the light and the viewer.
+    /// The normal of the planes of [`HatchMethod::Sections`]; `None` for up, turned slightly toward the light
+    /// and the viewer.
     pub normal: Option<DVec3>,
-    /// Whether a second family crosses the first one, unless there are angles.
+    /// Whether a second family crosses the first one, unless angles are given.
     pub cross: bool,
     /// How the spacing follows the tone.
     pub levels: HatchLevels,
@@ -115,10 +115,9 @@ pub struct HatchOptions {
     pub white: f64,
     /// Share of the paper that ink covers in the darkest places, from 0 to 1.
     pub black: f64,
-    /// The tone of what no light reaches, from 0 to 1.
+    /// The tone where no light reaches, from 0 to 1.
     pub ambient: f64,
-    /// Strokes are at least this long; `None` for a millimeter, or three widths of the pen if that is
-    /// more.
+    /// Strokes are at least this long; `None` for a millimeter, or three pen widths if that is more.
     pub shortest_mm: Option<f64>,
     /// Faces that meet at this angle or less are shaded as one curved surface.
     pub smooth_deg: f64,
@@ -126,9 +125,9 @@ pub struct HatchOptions {
     pub shadows: HatchShadows,
     /// White margin beside nearer outlines; zero for none.
     pub gap_mm: f64,
-    /// A plane that takes shadows.
+    /// A plane that catches shadows.
     pub ground: Option<Ground>,
-    /// Materials that are hatched in another way.
+    /// Materials with their own hatching.
     pub materials: Vec<HatchMaterial>,
 }
 
@@ -191,7 +190,7 @@ impl HatchOptions {
         Self { shadows, ..self }
     }
 
-    /// A plane that takes shadows.
+    /// A plane that catches shadows.
     #[must_use]
     pub fn ground(self, ground: Ground) -> Self {
         Self { ground: Some(ground), ..self }
@@ -237,14 +236,14 @@ impl HatchOptions {
     }
 }
 
-/// What of the image is on paper, at what scale, and with what pen.
+/// The part of the image that is on paper, its scale, and the pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HatchPage {
     /// Millimeters on paper for one unit of the image.
     pub mm_per_image_unit: f64,
-    /// The lowest and the highest corner of what is between the margins, in image coordinates.
+    /// The lowest and the highest corner of the area between the margins, in image coordinates.
     pub window: (glam::DVec2, glam::DVec2),
-    /// Line width of the pen as it is on paper.
+    /// Line width of the pen on paper.
     pub pen_width_mm: f64,
 }
 
@@ -256,10 +255,10 @@ impl HatchPage {
     }
 }
 
-/// Why nothing is hatched.
+/// Why hatching failed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum HatchError {
-    /// The light makes no shadows.
+    /// The light cannot cast shadows.
     #[error(transparent)]
     Light(#[from] LightError),
     /// The light does not shine on the ground.

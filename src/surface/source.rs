@@ -1,4 +1,4 @@
-//! Surfaces as they are described, before they are sampled.
+//! Descriptions of surfaces, before they are sampled.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -11,10 +11,10 @@ use super::names::{name_of_values, typeset};
 use super::points::{PointsError, delaunay};
 use crate::model::mesh::MeshError;
 
-/// The range of x and y that a formula is sampled over, unless set otherwise.
+/// The default range of x and y over which a formula is sampled.
 pub const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
 
-/// Samples along each axis, unless set otherwise.
+/// The default number of samples along each axis.
 pub const DEFAULT_SAMPLES: usize = 81;
 
 /// A surface to draw: one or more sheets z = f(x, y), a grid of heights, scattered points, or a
@@ -44,7 +44,7 @@ pub struct Surface {
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
     pub(super) z: Option<(f64, f64)>,
-    /// What to do with heights outside that.
+    /// What to do with heights outside that range.
     pub(super) outside: Outside,
     pub(super) samples: (usize, usize),
     pub(super) aspect: Aspect,
@@ -53,7 +53,7 @@ pub struct Surface {
     pub(super) log: [bool; 3],
     /// Whether x and y run the other way.
     pub(super) reversed: [bool; 2],
-    /// The names of the sheets, as far as they have any.
+    /// The names of the sheets that have one.
     names: Vec<String>,
 }
 
@@ -82,16 +82,16 @@ pub(super) enum Source {
 /// A sheet z = f(x, y).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormulaSheet {
-    /// z as a formula of x and y.
+    /// z as a formula in x and y.
     pub height: Formula,
-    /// Where the sheet is, as a formula of x and y that is true there; `None` is wherever it has a height.
+    /// The domain of the sheet, as a condition on x and y; `None` for wherever it has a height.
     pub domain: Option<Formula>,
 }
 
-/// Why there are no sheets for values of parameters.
+/// Why sheets cannot be made for values of parameters.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FamilyError {
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     #[error(transparent)]
     Formula(#[from] FormulaError),
     /// The values cannot be combined.
@@ -138,7 +138,7 @@ impl Surface {
     /// The sheet z = `text`, a formula of x, y, r and theta, for x and y from -5 to 5.
     ///
     /// # Errors
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     pub fn formula(text: &str) -> Result<Self, FormulaError> {
         Ok(Self::formulas(vec![Formula::parse(text, Variables::Plane)?]))
     }
@@ -308,7 +308,7 @@ impl Surface {
     /// Adds a sheet. It matters only for surfaces of formulas.
     ///
     /// # Errors
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     pub fn sheet(mut self, text: &str) -> Result<Self, FormulaError> {
         let formula = Formula::parse(text, Variables::Plane)?;
         if let Source::Formulas(sheets) = &mut self.source {
@@ -322,7 +322,7 @@ impl Surface {
     /// cut along the border. It matters only for surfaces of formulas.
     ///
     /// # Errors
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     pub fn domain(self, text: &str) -> Result<Self, FormulaError> {
         Ok(self.within(Formula::parse(text, Variables::Plane)?))
     }

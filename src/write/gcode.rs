@@ -89,7 +89,7 @@ pub enum GcodeError {
     /// No such profile.
     #[error("unknown G-code profile {name:?}; choose from {known}")]
     UnknownProfile {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,

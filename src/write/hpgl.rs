@@ -99,7 +99,7 @@ pub enum PlotterError {
     /// No such plotter.
     #[error("unknown plotter {name:?}; choose from {known}")]
     UnknownMachine {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,
@@ -109,7 +109,7 @@ pub enum PlotterError {
     UnknownPaper {
         /// The plotter.
         machine: String,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,

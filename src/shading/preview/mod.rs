@@ -148,7 +148,7 @@ pub enum PreviewError {
     /// The painter cannot order the faces.
     #[error(transparent)]
     NoOrder(#[from] painter::NoOrder),
-    /// The light makes no shadows.
+    /// The light cannot cast shadows.
     #[error(transparent)]
     Light(#[from] LightError),
     /// The stream failed.
