@@ -8,7 +8,7 @@ use super::axis_scale::AxisScale;
 use super::height_function::HeightFunction;
 use crate::surface::formula::Formula;
 
-/// Most samples of a grid: 10⁸.
+/// The maximum number of samples of a grid: 10⁸.
 pub const MAX_SAMPLES: usize = 100_000_000;
 
 /// Heights over a rectangular grid whose lines need not be evenly spaced.
@@ -66,7 +66,7 @@ pub enum Holes {
     All,
 }
 
-/// Why numbers make no grid.
+/// Why numbers do not form a grid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GridError {
     /// Fewer than two samples along an axis.
@@ -104,7 +104,7 @@ pub enum GridError {
         axis: char,
         /// Counted from 0.
         index: usize,
-        /// The one that is no larger than the one before.
+        /// The value that is not larger than the one before it.
         value: f64,
     },
     /// Heights that do not fill the grid.
