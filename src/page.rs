@@ -6,7 +6,7 @@
 //!          │   ┌──────────────────┐                              │ ╱  │
 //!          │   │     ╱│           │                              └────┴──► x
 //!          │   │   ╱  │           │               page_from_image: one scale for both
-//!          │   └──────────────────┘               axes, y turned downwards, a shift
+//!          │   └──────────────────┘               axes, y turned downward, a shift
 //!          ▼ y, mm
 //! ```
 //!
@@ -184,7 +184,7 @@ pub struct Page {
     pub paper: Paper,
     /// Margin on all four sides.
     pub margin_mm: f64,
-    /// Image coordinates (y upwards) to page millimeters (y downwards).
+    /// Image coordinates (y upward) to page millimeters (y downward).
     pub page_from_image: DAffine2,
 }
 

@@ -1,7 +1,7 @@
 //! A finished page: polylines and filled areas in millimeters, one layer per pen, ready for the writers.
 //!
 //! Page coordinates have their origin at the top left corner of the paper, x to the right and y
-//! *downwards*, in millimeters.
+//! *downward*, in millimeters.
 
 use std::borrow::Cow;
 

@@ -6,7 +6,7 @@
 //!              │   ╱ forward                  right   = forward × up
 //!              │  ╱                           upward  = right × forward
 //!              │ ╱
-//!         eye  ●──────► right (image x)       image: x to the right, y upwards
+//!         eye  ●──────► right (image x)       image: x to the right, y upward
 //! ```
 //!
 //! With `d = P − eye` and the three directions normalized as `r`, `u`, `f`, the image of `P` is
@@ -176,7 +176,7 @@ impl Camera {
         }
     }
 
-    /// Image coordinates of a world point, y upwards. Behind the eye they mean nothing.
+    /// Image coordinates of a world point, y upward. Behind the eye they mean nothing.
     pub fn image(&self, point: DVec3) -> DVec2 {
         let frame = self.frame();
         let d = point - self.eye;

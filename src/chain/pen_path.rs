@@ -28,7 +28,7 @@ const NEAR_LINES: u32 = 2;
 const NEAR_STROKES: usize = 8;
 
 /// Orders strokes, which are sorted by line and span: for each in turn its number, and whether it
-/// is drawn backwards. O(strokes log strokes).
+/// is drawn backward. O(strokes log strokes).
 pub(super) fn order(strokes: &[LineStroke]) -> Vec<(usize, bool)> {
     let mut is_drawn = vec![false; strokes.len()];
     let mut path: Vec<(usize, bool)> = Vec::with_capacity(strokes.len());

@@ -1,4 +1,4 @@
-//! From lines that are exactly visible to the lines that a draughtsman would draw.
+//! From lines that are exactly visible to the lines that a drafter would draw.
 //!
 //! Everything here selects, joins, cuts or leaves out lines on paper, in lengths of the pen's width and
 //! in millimeters. What is visible was decided before, and no line is added.

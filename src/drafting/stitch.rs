@@ -1,4 +1,4 @@
-//! Joins ends that a draughtsman would draw through.
+//! Joins ends that a drafter would draw through.
 //!
 //! ```text
 //!   (a)  ──────╴ ╶──────        two ends near each other that go on into each other

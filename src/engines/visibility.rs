@@ -23,7 +23,7 @@ pub struct Span {
 /// Spans of many segments in one flat array, in the order of the segments.
 ///
 /// The spans of a segment follow each other without gaps from where the near plane lets it begin
-/// to where it ends; neighbours differ in `qi` or in `doubled`. A segment that the near plane
+/// to where it ends; neighbors differ in `qi` or in `doubled`. A segment that the near plane
 /// removes, or whose image is a point, has none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Visibility {

@@ -312,8 +312,8 @@ impl Mesh {
 
     /// Leaves out each face with the same border as an earlier face, and reports how many there were.
     ///
-    /// Borders are the same when they pass the same vertices in the same cyclic order, forwards or
-    /// backwards: a wall exported from both sides, or a duplicated part. Two sides of one sheet
+    /// Borders are the same when they pass the same vertices in the same cyclic order, forward or
+    /// backward: a wall exported from both sides, or a duplicated part. Two sides of one sheet
     /// then count as one face, so its rim is a boundary again. O(corners) expected.
     pub fn merge_equal_faces(self) -> (Self, Repairs) {
         let first_equal = first_equal_face(&self);

@@ -5,8 +5,8 @@
 //!
 //! ```text
 //!     lower vertex      higher vertex
-//!          ●───────────────►●        a use that runs upwards, by the face above;
-//!          ●◄───────────────●        consistent winding makes the other run downwards
+//!          ●───────────────►●        a use that runs upward, by the face above;
+//!          ●◄───────────────●        consistent winding makes the other run downward
 //! ```
 
 use crate::model::mesh::Mesh;
@@ -29,7 +29,7 @@ pub struct Topology {
 /// One time that a face's border runs along an edge.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct EdgeUse {
-    /// The face, and in the lowest bit whether the border runs upwards.
+    /// The face, and in the lowest bit whether the border runs upward.
     packed: u32,
 }
 

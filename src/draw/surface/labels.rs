@@ -225,7 +225,7 @@ impl Map {
         nearest.1
     }
 
-    /// Where a level may be labelled, the cheapest place first.
+    /// Where a level may be labeled, the cheapest place first.
     fn places(&self, level: u16, text: &str, rules: &Rules) -> Vec<Place> {
         let width = axes::text(text, rules.height).1;
         let is_long = self.total(level) > LABELLED_MM;

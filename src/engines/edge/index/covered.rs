@@ -326,7 +326,7 @@ impl Cover {
     }
 }
 
-/// The depth of a triangle's plane as a function of the image, rounded upwards.
+/// The depth of a triangle's plane as a function of the image, rounded upward.
 struct DepthPlane {
     /// The unit normal along the image's axes and the direction of view.
     normal: DVec3,
