@@ -1,4 +1,4 @@
-//! One view of a scene: which faces face the eye, and which edges are drawn, and why.
+//! One view of a scene: which faces face the eye, which edges are drawn, and why.
 //!
 //! Faces are *front*, *back* or *edge-on* by the exact sign of their Newell normal against the
 //! direction to the eye. Edges take the first kind that applies:

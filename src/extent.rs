@@ -1,4 +1,4 @@
-//! How much of the image something takes up. A page is fitted to this box before any line is chosen.
+//! The extent of something in the image. A page is fitted to this box before any line is chosen.
 //!
 //! ```text
 //!         y                           In perspective, points near the eye's own plane have images

@@ -1,4 +1,4 @@
-//! A sheet of paper with a drawing on it, and its way into a file.
+//! A sheet of paper with a drawing on it, and how to save it.
 
 use std::fs;
 use std::path::Path;

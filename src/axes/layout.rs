@@ -1,4 +1,4 @@
-//! Where axes, numbers and titles are, so that no text touches ink or other text.
+//! Placement of axes, numbers and titles so that no text touches ink or other text.
 
 use glam::{DVec2, DVec3, dvec2};
 

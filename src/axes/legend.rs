@@ -1,4 +1,4 @@
-//! A legend: which line is what.
+//! A legend: which line stands for what.
 //!
 //! ```text
 //!            gap

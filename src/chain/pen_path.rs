@@ -1,4 +1,4 @@
-//! In which order and direction the strokes of a family of grid lines are drawn.
+//! The order and direction in which the strokes of a family of grid lines are drawn.
 //!
 //! ```text
 //!   ──────►─┐   ┌─►────      Where lines are hidden in part, what is visible falls into fields.

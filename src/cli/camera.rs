@@ -1,4 +1,4 @@
-//! Where the camera stands, by options or by a file.
+//! The camera, from options or from a file.
 
 use std::error::Error;
 use std::io::{self, Read};

@@ -1,4 +1,4 @@
-//! `hiddenline draw`: from model files to a drawing's file.
+//! `hiddenline draw`: from model files to a drawing in a file.
 
 mod lines;
 #[cfg(feature = "view")]

@@ -1,4 +1,4 @@
-//! Where results go: a file that appears whole or not at all, or standard output.
+//! Where results go: a file that appears completely or not at all, or standard output.
 
 use std::fs;
 use std::io::{self, BufWriter, Write};

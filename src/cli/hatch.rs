@@ -1,4 +1,4 @@
-//! Hatching: the options, and from them what is hatched.
+//! Hatching: from command-line options to hatch options.
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;

@@ -1,7 +1,7 @@
-//! Warnings about options that were typed but change nothing.
+//! Warnings about options on the command line that have no effect.
 //!
-//! Only what was typed counts: a setting from a file, a preset or the environment is meant for many
-//! drawings, and need not matter to each of them.
+//! Only options on the command line count: a setting from a file, a preset or the environment is meant for
+//! many drawings, and need not apply to each of them.
 
 use clap::ArgMatches;
 

@@ -1,4 +1,4 @@
-//! What is shown: models, or a surface in their place.
+//! The input: models, or a surface instead.
 
 use std::error::Error;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The output: file, format, and what is reported.
+//! The output: file, format, and messages.
 
 mod place;
 

@@ -1,4 +1,4 @@
-//! The page: its size, and how large the drawing is on it.
+//! The page: its size, and the size of the drawing on it.
 
 use clap::Args;
 use hiddenline::stages::page::{

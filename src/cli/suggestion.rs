@@ -1,4 +1,4 @@
-//! "Did you mean": names like one that is unknown.
+//! "Did you mean": known names that resemble an unknown one.
 
 /// Names at least this much like an unknown one are suggested (Jaro-Winkler similarity).
 const ALIKE: f64 = 0.75;

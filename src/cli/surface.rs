@@ -1,4 +1,4 @@
-//! `hiddenline surface`: from formulas, heights or points to a drawing's file.
+//! `hiddenline surface`: from formulas, heights or points to a drawing in a file.
 
 mod args;
 mod axes_args;

@@ -1,4 +1,4 @@
-//! Halos: farther lines stop short of nearer ones, so that one sees which passes in front.
+//! Halos: farther lines stop short of nearer ones, which shows which line passes in front.
 //!
 //! ```text
 //!            │ nearer

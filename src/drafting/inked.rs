@@ -1,4 +1,4 @@
-//! A draft, and what is near what in it.
+//! A draft, with an index of which strokes are near each other.
 
 use std::sync::OnceLock;
 

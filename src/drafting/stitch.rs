@@ -9,7 +9,7 @@
 //!         ╱ E                   stub is cut off, and the rest is joined to E
 //! ```
 //!
-//! The contour of a mesh zigzags along facets and hides itself at every other fold, which breaks it into
+//! The silhouette of a mesh zigzags along facets and hides itself at every other fold, which breaks it into
 //! such pieces.
 
 use glam::DVec2;

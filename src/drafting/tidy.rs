@@ -1,5 +1,5 @@
-//! From exact pieces to clean strokes: what belongs together is joined, what is lost without being missed
-//! is left out.
+//! From exact pieces to clean strokes: pieces that belong together are joined, and pieces that nobody would
+//! miss are left out.
 //!
 //! | step | does |
 //! |---|---|
@@ -8,8 +8,8 @@
 //! | shadows | leaves out short strokes that lie beside longer ink |
 //! | specks, spurs | leaves out small isolated figures, and short strokes with a loose end |
 //!
-//! The order matters: what is not joined first is eaten piece by piece. An outline is never opened, and
-//! borders and closed figures stay.
+//! The order matters: pieces that are not joined first would be dropped one by one. An outline is never
+//! opened, and borders and closed figures stay.
 
 use std::cmp::Reverse;
 

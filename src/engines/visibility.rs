@@ -1,4 +1,4 @@
-//! What the line engines answer: for every drawn segment, which parts are hidden how often.
+//! The answer of the line engines: the spans of every drawn segment, with their quantitative invisibility.
 
 /// A run of a segment with constant quantitative invisibility.
 ///

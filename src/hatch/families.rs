@@ -6,9 +6,9 @@
 //!  ╱ ╱╲ ╲ ╲  wrap the form                ╲══╲ one line on paper
 //! ```
 //!
-//! Lines of a family are numbered. Their base distance is an eighth of the least one that the darkest
-//! tone needs on a face square to the viewer, so that slanted faces find lines near enough to each
-//! other. Their ranks say which of them are drawn where: a darker place keeps every line of a lighter one.
+//! Lines of a family are numbered. Their base distance is an eighth of the least one that the darkest tone
+//! needs on a face square to the viewer, so that slanted faces get lines close enough together. Their ranks
+//! say which of them are drawn where: a darker place keeps every line of a lighter one.
 
 use glam::{DVec2, DVec3};
 

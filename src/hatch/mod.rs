@@ -9,9 +9,9 @@
 //! ```
 //!
 //! A hatch line is where a plane cuts the faces of the scene. Each of its segments lies in a face and has
-//! exact ends, and the line engine answers twice for it: which parts the eye sees, and which parts the
-//! light sees. Both answers are parameters along the same segment, so borders of shadows are as exact as
-//! what hides what. Only then comes the tone, which is rounded: how many of the lines are drawn.
+//! exact ends, and the line engine answers twice for it: which parts the eye sees, and which parts the light
+//! sees. Both answers are parameters along the same segment, so borders of shadows are as exact as
+//! visibility. Only then comes the tone, which is rounded: how many of the lines are drawn.
 //!
 //! Lines of one family nest: a darker place keeps every line of a lighter one (prioritized strokes:
 //! G. Winkenbach and D. H. Salesin, "Computer-generated pen-and-ink illustration", SIGGRAPH 1994; E. Praun

@@ -1,4 +1,4 @@
-//! What is hatched, and how.
+//! What to hatch, and how.
 
 use glam::DVec3;
 use thiserror::Error;

@@ -1,4 +1,4 @@
-//! Several models as one mesh: each turned upright, scaled, rotated and moved into place; then near
+//! Several models as one mesh: each turned upright, scaled, rotated and moved into place; then nearby
 //! vertices and equal faces are merged.
 
 use glam::{DMat3, DVec3};

@@ -1,4 +1,4 @@
-//! Which faces meet at which edges. No coordinates in here.
+//! Which faces meet at which edges, without coordinates.
 //!
 //! An *edge* is an unordered pair of vertices. Its *uses* are the times a face's border runs along
 //! it: a closed surface uses each edge twice, a border once, a fin three times.

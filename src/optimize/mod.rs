@@ -1,4 +1,4 @@
-//! Stroke optimization: nothing drawn twice, the fewest strokes, little pen-up travel.
+//! Stroke optimization: no doubled ink, the fewest strokes, little pen-up travel.
 //!
 //! ```text
 //!  lines ─► graph ─────► overlap ────► trails ───► simplify ─► order ─► lines

@@ -1,4 +1,4 @@
-//! Sizes of paper, and lengths with units.
+//! Paper sizes, and lengths with units.
 
 use std::str::FromStr;
 

@@ -1,4 +1,4 @@
-//! What is known about an axis before it has ticks.
+//! What is known about an axis before ticks are chosen.
 
 use super::numbers::Unit;
 

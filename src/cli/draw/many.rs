@@ -1,8 +1,7 @@
 //! Many drawings at once: frames of a turntable, views of a table, a drawing of each model.
 //!
-//! A scene is built once for all its views, and views are drawn in parallel. Frames have one scale, so
-//! that they can be laid over each other; models are fitted to their pages one by one. Messages come in
-//! the order of the drawings.
+//! A scene is built once for all its views, and views are drawn in parallel. Frames share one scale, so they
+//! can be overlaid; models are fitted to their pages one by one. Messages come in the order of the drawings.
 
 mod shard;
 mod views;

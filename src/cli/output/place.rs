@@ -1,4 +1,4 @@
-//! Whether the output may be written where it is to go.
+//! Whether the output file may be written.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What is typed after `hiddenline surface`, and what it means.
+//! The arguments of `hiddenline surface`, and the job that they describe.
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::draw::surface::{

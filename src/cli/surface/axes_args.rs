@@ -1,4 +1,4 @@
-//! Axes, as they are typed.
+//! Axis options.
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::{Axes, AxesStyle, BoxFront, TickRule, Titles, ZAxis};

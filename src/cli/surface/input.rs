@@ -1,4 +1,4 @@
-//! The surface that is drawn: read, sampled, scaled.
+//! The surface to draw: read, sampled, scaled.
 
 use std::error::Error;
 use std::io::{self, Read};

@@ -1,4 +1,4 @@
-//! Where surfaces come from, as it is typed: for drawings, fills and pictures alike.
+//! Input options of surfaces, shared by drawings, fills and pictures.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! A legend, as it is typed.
+//! Legend options.
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::LegendPlace;

@@ -1,4 +1,4 @@
-//! Drawings as commands: what the page asks for is what could have been typed, and is drawn as that.
+//! Drawings as commands: the page requests what could have been typed, and it is drawn as such.
 
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};

@@ -1,4 +1,4 @@
-//! `hiddenline view`: a page in the browser that shows the true drawing while one turns the model.
+//! `hiddenline view`: a page in the browser that shows the real drawing while the user turns the model.
 //!
 //! ```text
 //!   browser ◄─ HTTP on 127.0.0.1 ─► server, on the main thread
@@ -8,8 +8,8 @@
 //!                                                      studio ► the jobs of `draw` and `surface`
 //! ```
 //!
-//! What the page asks for is a command, and is drawn as if it had been typed: so every option of the
-//! command line is on the page, and what is saved has the bytes that the command would write.
+//! Each request of the page is a command, and is drawn as if it had been typed: so every option of the
+//! command line is on the page, and a saved file has the bytes that the command would write.
 
 mod composed;
 mod controls;

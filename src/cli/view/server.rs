@@ -1,4 +1,4 @@
-//! The server: connections on 127.0.0.1, few, patient but not forever.
+//! The server: connections on 127.0.0.1, limited in number and in waiting time.
 
 use std::convert::Infallible;
 use std::io;

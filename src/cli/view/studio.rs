@@ -1,4 +1,4 @@
-//! What is shown, kept between drawings, and how requests of the page become drawings.
+//! The current subject, kept between drawings, and how requests of the page become drawings.
 
 use std::error::Error;
 use std::ffi::OsString;

@@ -6,8 +6,8 @@
 //!          └───────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! Text is a few millimeters high whatever the scale, so that each layout is as large as the page that it
-//! was made for would have it; a few rounds settle that.
+//! Text is a few millimeters high whatever the scale, so each layout depends on the scale of the page that it
+//! was made for; a few rounds make them agree.
 
 use glam::{DVec2, DVec3};
 

@@ -1,4 +1,4 @@
-//! Why a surface cannot be drawn, and what is worth knowing about a drawing.
+//! Why a surface cannot be drawn, and notes on a drawing.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! Which lines of a surface are drawn, and how.
+//! Which lines of a surface to draw, and how.
 
 use crate::axes::{Axes, LegendPlace};
 use crate::draw::DEFAULT_SHORTEST_STROKE_MM;

@@ -1,9 +1,9 @@
-//! How finely formulas are sampled, so that drawn lines are as smooth as asked for.
+//! How finely formulas are sampled, so that drawn lines are as smooth as requested.
 //!
 //! Enclosures of the formulas say for each piece of a drawn line how far it can be from the function on
-//! paper. Where that is too far, columns and rows of samples are added; own lines remain the only ones
-//! that are drawn. Heights that are found in this way may change the scale of the drawing, so that the
-//! search is repeated a few times.
+//! paper. Where that is too far, columns and rows of samples are added; but only the original lines are
+//! drawn. Heights that are found in this way may change the scale of the drawing, so the search is repeated a
+//! few times.
 
 use super::bound::PaperBound;
 use super::certificate::{Certificate, Certifier, Needs};

@@ -1,4 +1,4 @@
-//! A drawn line as the engines see it: its ends, what the near plane leaves of it, its image.
+//! A drawn line as the engines see it: its ends, its part beyond the near plane, and its image.
 
 use crate::classify::ViewedScene;
 use crate::predicates::Cut;

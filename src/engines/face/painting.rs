@@ -1,4 +1,4 @@
-//! What face engines find: polygons in the image, each a piece of one face.
+//! The answer of the face engines: polygons in the image, each a fragment of one face.
 //!
 //! ```text
 //!  piece 0        piece 1                 a piece has one outer ring, counter-clockwise,

@@ -1,8 +1,8 @@
 //! How bent a surface is around an edge.
 //!
-//! The lines between the facets of a rounded body have neighbors that are bent as much as they are; a
-//! crease has not. So one walks straight over the surface, at right angles to the edge, and looks at
-//! the edges on the way:
+//! The lines between the facets of a rounded body have neighbors that are bent as much as they are; a crease
+//! does not. So this walks straight over the surface, at right angles to the edge, and looks at the edges
+//! along the way:
 //!
 //! ```text
 //!        ╲     │ edge ╱
