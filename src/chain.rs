@@ -90,7 +90,7 @@ fn join(pieces: &[Piece], options: &ChainOptions, has_outline: bool) -> Strokes 
         pieces.iter().for_each(|piece| push(&mut drawing, piece, &piece.points));
         return drawing;
     }
-    // What is short is so by all visible lines that go on from it, whatever draws them.
+    // What is short is so by all visible lines that continue from it, whatever draws them.
     let is_visible = |piece: &Piece| (0, piece.qi.min(1));
     let mut is_short = vec![false; pieces.len()];
     let mut points = Vec::new();
@@ -359,7 +359,7 @@ fn link<C: Copy + Ord + Send>(pieces: &[Piece], class: impl Fn(&Piece) -> C) -> 
 /// Most ends at one vertex of which every pair is weighed; more are paired in order.
 const MAX_WEIGHED_ENDS: usize = 64;
 
-/// Pairs of ends at one vertex, those that go on straightest first.
+/// Pairs of ends at one vertex, those that continue straightest first.
 fn straightest_pairs(
     pieces: &[Piece],
     ends: impl Iterator<Item = u32> + Clone,

@@ -9,7 +9,7 @@
 //! | nonmanifold | 3 or more | |
 //! | silhouette | 2 | one face front, the other not |
 //! | crease | 2 | angle between the normals above a threshold |
-//! | material | 2 | between two materials or groups; only when asked for |
+//! | material | 2 | between two materials or groups; only when requested |
 //! | mesh | any | |
 //! | intersection | none | the line in which two faces cross |
 //! | wire | none | a polyline of the model that borders no face |
@@ -214,7 +214,7 @@ impl<'a> ViewedScene<'a> {
         }
     }
 
-    /// Whether a line is known to lie in a triangle's plane: a line of intersection of faces in that plane,
+    /// Whether a line is known to lie in a triangle's plane: an intersection line of faces in that plane,
     /// or a segment of the view in a flat side of the model that the triangle is part of. The sign is then
     /// known.
     #[inline]
@@ -345,7 +345,7 @@ impl<'a> ViewedScene<'a> {
     }
 
     /// The lines to draw beside the edges that are `drawn`: bends that are silhouettes, wires, parts of
-    /// boundary edges, and lines of intersection that are not part of one of these edges.
+    /// boundary edges, and intersection lines that are not part of one of these edges.
     fn other_lines(
         &self,
         lines: LineSelection,

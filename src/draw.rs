@@ -210,9 +210,9 @@ pub struct MeshSize {
     pub triangles: usize,
     /// Distinct edges of these faces, before clipping.
     pub edges: usize,
-    /// Lines of intersection, before any are selected for drawing.
+    /// Intersection lines, before any are selected for drawing.
     pub intersections: usize,
-    /// Pairs of triangles whose boxes touch, tested for lines of intersection.
+    /// Pairs of triangles whose boxes touch, tested for intersection lines.
     pub intersection_pairs: u64,
 }
 
@@ -232,7 +232,7 @@ impl MeshSize {
 
 /// Draws `scene` as `camera` sees it.
 ///
-/// Lines of intersection are drawn when the scene has them; see
+/// Intersection lines are drawn when the scene has them; see
 /// [`Scene::with_intersections`](crate::model::scene::Scene::with_intersections).
 ///
 /// `mm_per_unit` is the number of millimeters on paper for one image unit, which the page knows from the

@@ -42,7 +42,7 @@ pub enum Projection {
 /// The default distance of the near plane, as a fraction of the distance from eye to target.
 pub const DEFAULT_NEAR: f64 = 1e-6;
 
-/// The vertical field of view, in degrees, unless set otherwise.
+/// The vertical field of view, in degrees, by default.
 pub const DEFAULT_FOV_DEG: f64 = 30.0;
 
 /// A point of view: finite, with `up` not parallel to the direction of view.

@@ -128,7 +128,7 @@ impl ViewSource {
         }
     }
 
-    /// What was asked for, the camera of a file included.
+    /// What was requested, the camera of a file included.
     pub(super) fn framing(&self) -> Result<View, Box<dyn Error>> {
         match self {
             Self::File(path) => Ok(View::from(&read_camera(path)?)),

@@ -257,7 +257,7 @@ fn layers(
 /// Machines of the configuration files.
 #[derive(Default)]
 pub(super) struct OwnMachines {
-    /// The one asked for, and the name of its origin.
+    /// The one requested, and the name of its origin.
     pub(super) found: Option<(Table, String)>,
     /// The names of all.
     pub(super) names: Vec<String>,

@@ -55,7 +55,7 @@ fn create_beside(target: &Path, existing: Option<&fs::Metadata>) -> io::Result<N
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // What any program asks for that creates a file; the umask is taken off by the system.
+        // What any program requests that creates a file; the umask is taken off by the system.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     // The error would name the temporary file, which nobody knows.

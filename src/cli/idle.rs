@@ -241,7 +241,7 @@ fn has_no_axes(choices: &Choices) -> bool {
     is_exact(choices) || choices.is_set("no-axes") || choices.has("axes", &["none"])
 }
 
-/// Level curves have no labels unless these are asked for, but in views from above without grid lines.
+/// Level curves have no labels unless these are requested, but in views from above without grid lines.
 fn has_no_labels(choices: &Choices) -> bool {
     let has_grid_lines = choices.has("lines", &["x", "y", "both"]);
     choices.has("labels", &["none"]) || !choices.is_present("labels") && has_grid_lines

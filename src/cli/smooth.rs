@@ -20,7 +20,7 @@ use super::values::{self, Smooth};
 /// millimeters.
 const DEFAULT_TOLERANCE_MM: f64 = 0.05;
 
-/// The same in widths of the pen.
+/// The same in pen widths.
 const DEFAULT_TOLERANCE: f64 = 0.25;
 
 /// Refinement does not grow finer nearer to the eye than this share of the distance to the target.

@@ -24,9 +24,9 @@ pub(super) struct Stats {
     pub(super) triangles: usize,
     /// Distinct edges of these faces, before clipping.
     pub(super) edges: usize,
-    /// Lines of intersection, before any are selected for drawing.
+    /// Intersection lines, before any are selected for drawing.
     pub(super) intersections: usize,
-    /// Edges and lines of intersection selected for drawing.
+    /// Edges and intersection lines selected for drawing.
     pub(super) drawn_edges: usize,
     /// Strokes of the drawing.
     pub(super) strokes: usize,
@@ -111,7 +111,7 @@ pub(super) struct Counts {
     pub(super) culled_triangles: u64,
     /// Drawn edges that were not tested, since they certainly lie behind a surface.
     pub(super) culled_edges: u64,
-    /// Pairs of triangles whose boxes touch, tested for lines of intersection.
+    /// Pairs of triangles whose boxes touch, tested for intersection lines.
     pub(super) intersection_pairs: u64,
     /// Counts of the face engine, if areas are filled.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -21,7 +21,7 @@ use crate::strokes::draft::DraftPoint;
 
 use super::tiles::Tiles;
 
-/// Cells across a pen's width, for most pages.
+/// Cells across a pen width, for most pages.
 const CELLS_PER_PEN: f64 = 3.0;
 
 /// Most cells of the grid. Larger pages get larger ones.

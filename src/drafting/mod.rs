@@ -121,7 +121,7 @@ pub struct Drafted {
     pub overlap_mm: f64,
     /// Length of what was left out where lines crowded each other, in millimeters.
     pub thinned_mm: f64,
-    /// The share of the ink that has other ink beside it within a pen's width, before lines are thinned.
+    /// The share of the ink that has other ink beside it within a pen width, before lines are thinned.
     pub crowded_share: f64,
 }
 
@@ -188,7 +188,7 @@ pub fn finish(
 struct Paper {
     /// A millimeter.
     mm: f64,
-    /// The pen's width.
+    /// The pen width.
     pen: f64,
     /// Smaller figures are specks.
     figure: f64,

@@ -18,7 +18,7 @@ use crate::camera::{Camera, Frame, Projection};
 use crate::predicates::FreePlane;
 use crate::shading::light::Light;
 
-/// So many lines at base distance make the least distance of lines that are drawn.
+/// This many lines at base distance make the least distance of lines that are drawn.
 const BASE_LINES: f64 = 8.0;
 
 /// Sections are turned so far from upright toward the light, across the view, in degrees.

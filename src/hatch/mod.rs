@@ -191,11 +191,11 @@ pub fn planes(
 /// What a camera sees of each segment.
 struct Seen {
     visibility: Visibility,
-    /// For each segment its place among those that were asked for, or [`UNASKED`].
+    /// For each segment its place among those that were requested, or [`UNASKED`].
     place: Vec<u32>,
 }
 
-/// A segment that was not asked for, or whose image is a point.
+/// A segment that was not requested, or whose image is a point.
 const UNASKED: u32 = u32::MAX;
 
 impl Seen {
@@ -211,7 +211,7 @@ impl Seen {
         Self { visibility, place }
     }
 
-    /// The spans of a segment; none if it was not asked for.
+    /// The spans of a segment; none if it was not requested.
     fn spans(&self, segment: usize) -> &[Span] {
         match self.place[segment] {
             UNASKED => &[],

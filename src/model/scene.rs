@@ -146,7 +146,7 @@ impl Scene {
         self
     }
 
-    /// Also finds boundary edges beyond which a coplanar face goes on, as at T-junctions, so that they
+    /// Also finds boundary edges beyond which a coplanar face continues, as at T-junctions, so that they
     /// count as edges within a face. Those that are flush in part are split.
     /// Expected cost O(n log n) in boundary edges and triangles.
     #[must_use]

@@ -120,7 +120,7 @@ pub enum Fault {
     /// A word that the format does not allow here.
     #[error("{expected} expected, `{found}` found; correct the line or export the model again")]
     Unexpected {
-        /// What the format asks for.
+        /// What the format expects.
         expected: &'static str,
         /// What is there.
         found: String,

@@ -17,7 +17,7 @@ pub const MAX_SAMPLES: usize = 100_000_000;
 ///   y ▲   (i,j+1)──(i+1,j+1)        The surface is triangulated: each cell is cut along
 ///     │      │    ╱    │            (i,j)–(i+1,j+1). Sample (i,j) is at (xs[i], ys[j]).
 ///     │      │  ╱      │            A height that is not a number is a hole: the cells
-///     │    (i,j)────(i+1,j)         around it are no part of the surface.
+///     │    (i,j)────(i+1,j)         around it are not part of the surface.
 ///     └──────────────────► x
 /// ```
 #[derive(Debug, Clone, PartialEq)]

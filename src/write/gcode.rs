@@ -49,7 +49,7 @@ pub struct GcodeProfile {
     #[serde(default)]
     pub layer_end: String,
     /// Between two layers, before the start of the second one, to change pens; also before a first layer
-    /// that asks for a pause.
+    /// that requests a pause.
     #[serde(default)]
     pub pen_change: String,
     /// At the end of the file.

@@ -153,7 +153,7 @@ pub enum PlotterError {
         machine: String,
         /// `speed` or `force`.
         what: &'static str,
-        /// The value asked for.
+        /// The value requested.
         value: u32,
         /// The lowest value it takes.
         low: u32,
@@ -236,7 +236,7 @@ impl Plotter {
         Ok(())
     }
 
-    /// Value of `VS` for a layer: the share of the highest speed that its label asks for, or else the
+    /// Value of `VS` for a layer: the share of the highest speed that its label requests, or else the
     /// machine's setting.
     fn layer_speed(&self, layer: &Layer) -> Option<u32> {
         match (layer.speed_percent(), self.speeds) {

@@ -159,7 +159,7 @@ fn push_area(text: &mut String, area: &Area, seam: &str) {
 /// Points of strokes that are written at once: enough that sharing the work costs nothing.
 const POINTS_AT_ONCE: usize = 1 << 14;
 
-/// So many batches are put together at a time, so that a large drawing is not in memory twice as text.
+/// This many batches are put together at a time, so that a large drawing is not in memory twice as text.
 const BATCHES_AT_ONCE: usize = 64;
 
 /// All strokes of a layer, one a line.

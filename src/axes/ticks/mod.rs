@@ -18,7 +18,7 @@ pub(super) use self::spacing::Ticks;
 use self::numbers::Unit;
 use self::spacing::Spacing;
 
-/// Most ticks with a step that was asked for.
+/// Most ticks with a step that was requested.
 const MOST_TICKS: i64 = 1000;
 
 /// Proposals that are worth trying.

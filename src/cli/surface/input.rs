@@ -41,7 +41,7 @@ pub(in crate::cli) enum SurfaceSource {
     },
 }
 
-/// A surface as it is asked for.
+/// A surface as requested.
 pub(in crate::cli) struct SurfaceInput {
     pub(super) input: SurfaceSource,
     pub(super) options: HeightOptions,
@@ -268,7 +268,7 @@ impl SurfaceInput {
         }
     }
 
-    /// The surface as a mesh, sampled as asked for.
+    /// The surface as a mesh, sampled as requested.
     pub(in crate::cli) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         let mut warnings = Vec::new();
         let surface = self.read(&mut warnings)?;

@@ -63,7 +63,7 @@ impl Composed {
         Ok(Self { name, subjects, options })
     }
 
-    /// The same with the options that a page asks for in place of its own: an object with texts, numbers,
+    /// The same with the options that a page requests in place of its own: an object with texts, numbers,
     /// `true`, or lists of texts. Options that the page may not set stay as they are.
     pub(super) fn with(&self, command: &Command, asked: &Value) -> Result<Self, String> {
         let Some(asked) = asked.as_object() else {

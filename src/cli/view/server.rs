@@ -32,7 +32,7 @@ pub(super) async fn bind(port: u16) -> io::Result<TcpListener> {
     TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, port))).await
 }
 
-/// Serves until a signal asks for the end or, with `once`, the last page was closed.
+/// Serves until a signal requests the end or, with `once`, the last page was closed.
 pub(super) async fn serve(
     listener: TcpListener,
     shared: Arc<Shared>,

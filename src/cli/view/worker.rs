@@ -87,7 +87,7 @@ impl Drop for Ticket {
     }
 }
 
-/// What happens without being asked for: lines for one page, or for all.
+/// What happens without being requested: lines for one page, or for all.
 #[derive(Debug, Clone)]
 pub(super) struct Event {
     /// `None` is every page.

@@ -43,7 +43,7 @@ pub enum SurfaceError {
          {MAX_TRIANGLES}"
     )]
     TooManyTriangles(u64),
-    /// More level curves than can be told apart.
+    /// More level curves than can be distinguished.
     #[error("{0:.0} level curves exceed the limit of {MAX_LEVELS}")]
     TooManyLevels(f64),
     /// Level curves alone are to be drawn, and there are none.
@@ -70,7 +70,7 @@ pub enum SurfaceError {
          with grid lines only"
     )]
     Order,
-    /// A frame was asked for around a surface that is seen at an angle.
+    /// A frame was requested around a surface that is seen at an angle.
     #[error("a frame needs an orthographic view from straight above or below")]
     Frame,
 }
@@ -100,7 +100,7 @@ pub enum NoLevels {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SurfaceNote {
-    /// Lines may be farther from the function than asked for, even with the finest samples.
+    /// Lines may be farther from the function than requested, even with the finest samples.
     #[error("{0}")]
     Uncertified(Certificate),
     /// The formula grows without end somewhere, so that only usual heights are drawn.
@@ -131,7 +131,7 @@ pub enum SurfaceNote {
     /// Text takes up so much room that the drawing is small.
     #[error("numbers and titles leave little room for the drawing on this page")]
     LittleRoom,
-    /// Ticks at the steps asked for would be too many.
+    /// Ticks at the requested steps would be too many.
     #[error("the given steps would make too many ticks: an axis uses other steps")]
     TooManyTicks,
     /// There are more sheets than dashes for pens that look alike.

@@ -42,7 +42,7 @@ pub(super) struct SmoothSurface {
     /// How close its lines are to the formulas; none if nothing is to be proved.
     pub(super) certificate: Option<Certificate>,
     /// The heights that are drawn, as coordinates before any is multiplied, if others grow without end or
-    /// are not asked for.
+    /// are not requested.
     pub(super) heights: Option<(f64, f64)>,
 }
 

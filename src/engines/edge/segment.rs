@@ -9,7 +9,7 @@ use glam::DVec2;
 pub(super) struct Segment {
     /// Its number among the lines of the scene.
     pub edge: u32,
-    /// Its end points, in the direction of the parameter.
+    /// Its endpoints, in the direction of the parameter.
     pub ends: [u32; 2],
     /// Where the kept part begins.
     pub from: Cut,

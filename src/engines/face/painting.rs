@@ -88,7 +88,7 @@ impl Painting {
         self.pieces.is_empty()
     }
 
-    /// The pieces in the order of painting.
+    /// The pieces in the paint order.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = PaintedPiece<'_>> {
         (0..self.pieces.len()).map(|number| {
             let first_ring = match number.checked_sub(1) {

@@ -10,7 +10,7 @@ use super::looseness::model;
 use super::surroundings::bend_nearby;
 use super::{CreaseAngle, along, angle, length, looseness};
 
-/// Edges that turn more than this, in degrees, do not go on into each other.
+/// Edges that turn more than this, in degrees, do not continue into each other.
 const MAX_TURN_DEG: f64 = 45.0;
 
 /// In organic models, chains shorter than this on paper are left out, in millimeters.
@@ -161,7 +161,7 @@ fn excess_deg(scene: &Scene, edge: u32, low: &LowThreshold) -> f64 {
     (excess_deg - low.degrees).max(-low.degrees)
 }
 
-/// For each end of each candidate, numbered `2 · candidate + side`, the end it goes on into: at each
+/// For each end of each candidate, numbered `2 · candidate + side`, the end it continues into: at each
 /// vertex the straightest first.
 fn straightest(scene: &Scene, candidates: &[ChainLink]) -> Vec<u32> {
     let cos_turn = libm::cos(MAX_TURN_DEG.to_radians());

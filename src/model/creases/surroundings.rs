@@ -85,7 +85,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// Over the face to its other side: where the walk goes on, how far that is, and the angle there,
+    /// Over the face to its other side: where the walk continues, how far that is, and the angle there,
     /// or zero if the bend is in the other sense. `None` at the end of the surface.
     fn step(&self, scene: &Scene) -> Option<(Self, f64, f64)> {
         let (topology, mesh) = (scene.topology(), scene.mesh());

@@ -42,7 +42,7 @@ pub(super) fn curve_middle([a, b]: [DVec3; 2], [t_a, t_b]: [DVec3; 2]) -> DVec3 
     0.5 * (a + b) + if bend.is_finite() { bend } else { DVec3::ZERO }
 }
 
-/// A straight line goes on into a curve where its piece is this many times as long as the curve's.
+/// A straight line continues into a curve where its piece is this many times as long as the curve's.
 const STRAIGHT: f64 = 3.0;
 
 /// The tangent at `v` of the circle through three points, from `before` toward `after`; `None` where the

@@ -105,7 +105,7 @@ impl<'a> List<'a> {
         if n_samples == 0 { 0 } else { found / n_samples as u64 * n as u64 }
     }
 
-    /// All items, or their parts, in the order of painting.
+    /// All items, or their parts, in the paint order.
     pub(super) fn sorted(
         &mut self,
         counts: &mut DepthSortCounts,
