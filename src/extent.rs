@@ -122,7 +122,7 @@ impl Extent {
     }
 }
 
-/// What of the image is fitted at most, to each side of the direction of view.
+/// The widest part of the image that is fitted, to each side of the direction of view.
 fn widest() -> DVec2 {
     DVec2::splat(libm::tan(WIDEST_FITTED_ANGLE_DEG.to_radians()))
 }

@@ -60,7 +60,7 @@ impl Default for Pose {
     }
 }
 
-/// What is done to the scene as a whole once all models are placed.
+/// Options for the whole scene, once all models are placed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Arrangement {
     /// Vertices closer than this, in model units after scaling, are merged; see [`Mesh::weld`].

@@ -24,7 +24,7 @@ pub struct GcodeProfile {
     /// Unit of positions and speeds.
     #[serde(default)]
     pub unit: Unit,
-    /// Whether y runs up from the bottom of the page; true unless given.
+    /// Whether y runs up from the bottom of the page; true by default.
     #[serde(default = "yes")]
     pub flip_y: bool,
     /// Decimals of positions, 9 at most.
@@ -138,7 +138,7 @@ impl GcodeProfile {
         Ok(profiles.into_keys().collect())
     }
 
-    /// A known profile as TOML, to start from; `None` when there is none of that name.
+    /// A built-in profile as TOML, to start from; `None` if no profile has that name.
     ///
     /// # Errors
     /// Only for a defect in the profiles themselves.

@@ -84,7 +84,7 @@ pub fn write(plot: &Plot, resolution: Resolution, out: &mut dyn io::Write) -> Re
     write_marked(plot, resolution, Marks::default(), out)
 }
 
-/// Writes a picture of `plot` that also shows the pens' movements. O(pixels + strokes).
+/// Writes a picture of `plot` that also shows pen movement. O(pixels + strokes).
 ///
 /// # Errors
 /// See [`PngError`].

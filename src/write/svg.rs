@@ -41,9 +41,9 @@ impl StrokeElement {
 
 /// Writes `plot` as SVG. The same plot gives the same bytes.
 ///
-/// Coordinates are millimeters with up to three decimals. Points that are equal after rounding to
-/// these are one; a stroke of which one point is left is left out. A dot is a line to where it begins,
-/// which round caps make visible. O(points).
+/// Coordinates are millimeters with up to three decimals. Points that are equal after rounding to these are
+/// one; a stroke reduced to one point is left out. A dot is a line back to its start, which round caps make
+/// visible. O(points).
 ///
 /// # Errors
 /// Those of `out`.
