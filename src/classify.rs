@@ -298,7 +298,7 @@ impl<'a> ViewedScene<'a> {
         self.near_plane_cuts
     }
 
-    /// What the near plane keeps of a triangle. Exact.
+    /// The part of a triangle beyond the near plane. Exact.
     #[inline]
     pub fn kept(&self, triangle: u32) -> Kept {
         match self.near_plane_cuts {

@@ -55,9 +55,9 @@ pub use self::options::{
     HatchPage, HatchShadows, LEVELS, MOST_FAMILIES,
 };
 
-/// Hatches a surface as its drawing shows it. There is no hatching if the drawing kept no scene.
+/// Hatches a surface as its drawing shows it. Without a scene in the drawing, nothing is hatched.
 ///
-/// With `exact` every line of base distance is there; see [`hatch`]. `width_mm` is that of the pen.
+/// With `exact` every line at the base distance is drawn; see [`hatch`]. `width_mm` is the pen width.
 ///
 /// # Errors
 /// See [`HatchError`].

@@ -277,7 +277,7 @@ pub fn with_hatch_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
     rules
 }
 
-/// The width of the pen that hatches by some rules, in millimeters; that of the other pens unless they say.
+/// The width of the pen that hatches according to `rules`, in millimeters; by default that of the other pens.
 pub fn hatch_width_mm(rules: &[PenRule], width_mm: f64) -> f64 {
     let hatch = PenRole::Kind(StrokeKind::Hatch);
     let rule = rules.iter().rev().find(|rule| rule.drawn == hatch);
