@@ -1,4 +1,4 @@
-//! A map of a volcano whose heights are whole meters, every fifth curve heavy and labelled.
+//! A map of a volcano whose heights are whole meters, every fifth curve heavy and labeled.
 
 use hiddenline::{
     Axes, Error, Formula, Grid, LegendPlace, Levels, Paper, Sheet, Surface, SurfaceLines, Titles,

@@ -1,4 +1,4 @@
-//! How an oscillator answers, on logarithmic axes: the damping runs backwards, and the box has lengths
+//! How an oscillator answers, on logarithmic axes: the damping runs backward, and the box has lengths
 //! of its own.
 
 use hiddenline::{

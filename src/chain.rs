@@ -90,7 +90,7 @@ fn join(pieces: &[Piece], options: &ChainOptions, has_outline: bool) -> Strokes 
         pieces.iter().for_each(|piece| push(&mut drawing, piece, &piece.points));
         return drawing;
     }
-    // What is short is so by all visible lines that go on from it, whatever draws them.
+    // What is short is so by all visible lines that continue from it, whatever draws them.
     let is_visible = |piece: &Piece| (0, piece.qi.min(1));
     let mut is_short = vec![false; pieces.len()];
     let mut points = Vec::new();
@@ -307,7 +307,7 @@ fn close_gaps(spans: &mut [Span], is_short: impl Fn(f64, f64) -> bool) {
     }
 }
 
-/// Joins neighbouring spans that are drawn alike.
+/// Joins neighboring spans that are drawn alike.
 fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
     spans.dedup_by(|next, last| {
         let same_doubling = options.exact || next.doubled == last.doubled;
@@ -325,7 +325,7 @@ fn merge(spans: &mut Vec<Span>, options: &ChainOptions) {
 /// For each end of each piece (numbered `2 · piece + side`) the end it is joined to, or [`FREE`].
 fn link<C: Copy + Ord + Send>(pieces: &[Piece], class: impl Fn(&Piece) -> C) -> Vec<u32> {
     let mut links = vec![FREE; 2 * pieces.len()];
-    // Ends by vertex, then class, then number: ends that may join are neighbours.
+    // Ends by vertex, then class, then number: ends that may join are neighbors.
     let mut ends: Vec<(u32, C, u32)> = (0..links.len() as u32)
         .filter_map(|end| {
             let piece = &pieces[end as usize / 2];
@@ -359,7 +359,7 @@ fn link<C: Copy + Ord + Send>(pieces: &[Piece], class: impl Fn(&Piece) -> C) -> 
 /// Most ends at one vertex of which every pair is weighed; more are paired in order.
 const MAX_WEIGHED_ENDS: usize = 64;
 
-/// Pairs of ends at one vertex, those that go on straightest first.
+/// Pairs of ends at one vertex, those that continue straightest first.
 fn straightest_pairs(
     pieces: &[Piece],
     ends: impl Iterator<Item = u32> + Clone,

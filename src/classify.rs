@@ -1,4 +1,4 @@
-//! One view of a scene: which faces face the eye, and which edges are drawn, and why.
+//! One view of a scene: which faces face the eye, which edges are drawn, and why.
 //!
 //! Faces are *front*, *back* or *edge-on* by the exact sign of their Newell normal against the
 //! direction to the eye. Edges take the first kind that applies:
@@ -9,7 +9,7 @@
 //! | nonmanifold | 3 or more | |
 //! | silhouette | 2 | one face front, the other not |
 //! | crease | 2 | angle between the normals above a threshold |
-//! | material | 2 | between two materials or groups; only when asked for |
+//! | material | 2 | between two materials or groups; only when requested |
 //! | mesh | any | |
 //! | intersection | none | the line in which two faces cross |
 //! | wire | none | a polyline of the model that borders no face |
@@ -35,28 +35,28 @@ use rayon::prelude::*;
 pub use self::segments::ViewSegments;
 pub use self::selection::LineSelection;
 
-/// Faces that meet at more than this angle, in degrees, make a crease unless set otherwise.
+/// The default crease angle: faces that meet at more than this angle, in degrees, form a crease.
 pub const DEFAULT_CREASE_DEG: f64 = 30.0;
 
-/// An edge that is to be drawn.
+/// An edge to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SelectedLine {
     /// Its number among the lines of the view; see [`ViewedScene::line`].
     pub edge: u32,
     /// Why it is drawn.
     pub kind: StrokeKind,
-    /// Which part of a surface it is of.
+    /// The part of a surface that it belongs to.
     pub part: SurfacePart,
 }
 
 impl SelectedLine {
-    /// A line that is of no part of a surface.
+    /// A line that belongs to no part of a surface.
     pub fn new(edge: u32, kind: StrokeKind) -> Self {
         Self { edge, kind, part: SurfacePart::default() }
     }
 }
 
-/// A scene as one camera sees it, with the edges that are to be drawn.
+/// A scene as one camera sees it, with the edges to draw.
 #[derive(Debug)]
 pub struct ViewedScene<'a> {
     scene: &'a Scene,
@@ -82,7 +82,7 @@ impl<'a> ViewedScene<'a> {
     /// Classifies faces and edges; edges of the kinds in `lines` are drawn, in the order of the
     /// topology.
     ///
-    /// An edge is selected by any kind that applies to it, and gets the first that does. Edges whose
+    /// An edge is selected by any kind that applies to it, and gets the first of its kinds. Edges whose
     /// image is a point are left out. `crease_deg` is in degrees. O(faces + edges), in parallel.
     pub fn new(scene: &'a Scene, camera: &Camera, lines: LineSelection, crease_deg: f64) -> Self {
         Self::with(scene, camera, lines, CreaseRule::above(crease_deg), true, None)
@@ -179,9 +179,9 @@ impl<'a> ViewedScene<'a> {
 
     /// Draws the given edges and no others, whatever kinds apply to them.
     ///
-    /// They may come in any order. An edge that is given more than once is a silhouette if one of its kinds
-    /// is, and otherwise gets the last of its kinds in the order of [`StrokeKind`]; edges whose image is a point are left out. Panics when an edge does
-    /// not exist. O(faces + edges log edges).
+    /// They may come in any order. An edge listed more than once is a silhouette if any of its kinds is, and
+    /// otherwise gets the last of its kinds in the order of [`StrokeKind`]; edges whose image is a point are
+    /// left out. Panics when an edge does not exist. O(faces + edges log edges).
     pub fn with_edges(scene: &'a Scene, camera: &Camera, mut edges: Vec<SelectedLine>) -> Self {
         let mut view = Self::new(scene, camera, LineSelection::NONE, DEFAULT_CREASE_DEG);
         edges.par_sort_unstable_by_key(|drawn| {
@@ -202,7 +202,7 @@ impl<'a> ViewedScene<'a> {
         self.scene
     }
 
-    /// The ends of a line of the scene, or of a segment of the view's own, as numbers of points.
+    /// The ends of a line of the scene, or of a segment added by the view, as numbers of points.
     /// Panics when there is no such line.
     #[inline]
     pub fn line(&self, line: u32) -> [u32; 2] {
@@ -214,8 +214,9 @@ impl<'a> ViewedScene<'a> {
         }
     }
 
-    /// Whether a line is known to lie in a triangle's plane: a line of intersection of faces in that
-    /// plane, or a segment of the view in a flat side of the model that the triangle is part of. No sign need be asked then.
+    /// Whether a line is known to lie in a triangle's plane: an intersection line of faces in that plane,
+    /// or a segment of the view in a flat side of the model that the triangle is part of. The sign is then
+    /// known.
     #[inline]
     pub fn is_known_in_plane_of(&self, line: u32, triangle: u32) -> bool {
         if let Some(own) = self.own
@@ -234,7 +235,7 @@ impl<'a> ViewedScene<'a> {
         }
     }
 
-    /// Keeps of the lines to draw only those with certain numbers.
+    /// Keeps only those lines to draw whose numbers pass `is_kept`.
     pub fn keep(&mut self, is_kept: impl Fn(u32) -> bool) {
         self.drawn.retain(|drawn| is_kept(drawn.edge));
     }
@@ -270,14 +271,14 @@ impl<'a> ViewedScene<'a> {
         facings[face as usize]
     }
 
-    /// The edges that are not surely *even*, with one triangle on each side of their image, in order;
+    /// The edges that are not known to be *even*, with one triangle on each side of their image, in order;
     /// `None` when there are faces of more than three corners. Silhouettes are among them.
     pub fn uneven_edges(&self) -> Option<&[u32]> {
         self.uneven.as_deref()
     }
 
     /// What to draw, by number: edges in the order of the topology, then the other lines of the scene,
-    /// then the segments of the view's own.
+    /// then the segments added by the view.
     pub fn selected(&self) -> &[SelectedLine] {
         &self.drawn
     }
@@ -297,7 +298,7 @@ impl<'a> ViewedScene<'a> {
         self.near_plane_cuts
     }
 
-    /// What the near plane keeps of a triangle. Exact.
+    /// The part of a triangle beyond the near plane. Exact.
     #[inline]
     pub fn kept(&self, triangle: u32) -> Kept {
         match self.near_plane_cuts {
@@ -344,7 +345,7 @@ impl<'a> ViewedScene<'a> {
     }
 
     /// The lines to draw beside the edges that are `drawn`: bends that are silhouettes, wires, parts of
-    /// boundary edges, and lines of intersection that are not part of one of these edges.
+    /// boundary edges, and intersection lines that are not part of one of these edges.
     fn other_lines(
         &self,
         lines: LineSelection,

@@ -1,4 +1,4 @@
-//! Things that are sorted into groups by saying which two belong together.
+//! Union-find: elements grouped by joining two at a time.
 
 /// Disjoint sets of the numbers from 0 up to some number, as a forest (R. E. Tarjan, "Efficiency of a good
 /// but not linear set union algorithm", JACM 22, 1975).

@@ -26,34 +26,34 @@ pub const DEFAULT_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 22) as f64;
 /// model one unit in size that was written with six decimals.
 pub const LEAST_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 
-/// The default shortest stroke in millimeters on paper: a little less than the width of a pen, which
-/// makes a dot of that size anyway.
+/// The default shortest stroke in millimeters on paper: a little less than the width of a pen, whose smallest
+/// dot is that large anyway.
 pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.25;
 
-/// The usual distance between lines that are thinned, in widths of the pen: it leaves half a pen's width
-/// of paper between them.
+/// The default distance between thinned lines, in pen widths: it leaves half a pen width of paper between
+/// them.
 pub const DEFAULT_THIN: f64 = 1.5;
 
 /// What to draw, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DrawOptions {
-    /// Which kinds of line.
+    /// Which kinds of lines to draw.
     pub lines: LineSelection,
-    /// Faces that meet at more than this angle, in degrees, make a crease.
+    /// Faces that meet at more than this angle, in degrees, form a crease.
     pub crease_deg: f64,
     /// Whether hidden lines are left out, or kept with their quantitative invisibility.
     pub hidden: HiddenLines,
     /// Keep only hidden lines with at most this quantitative invisibility, which is then constant along
     /// each stroke; `None` keeps all.
     pub hidden_levels: Option<u32>,
-    /// One two-point stroke for each maximal visible interval of each line: nothing is joined, dropped
-    /// or deduplicated, contact tolerance and shortest stroke are zero, and faces are taken as given:
-    /// bent ones by their mean normals, flush edges as boundaries.
+    /// One two-point stroke for each maximal visible interval of each line: nothing is joined, dropped or
+    /// deduplicated, contact tolerance and shortest stroke are zero, and faces are used as given: bent ones
+    /// by their mean normals, flush edges as boundaries.
     pub exact: bool,
     /// The line engine.
     pub engine: LineEngine,
-    /// A triangle does not cover a segment both of whose ends lie within this distance of its
-    /// plane, in model units; `None` for the default, which depends on the size of the coordinates.
+    /// A triangle does not hide a segment if both ends lie within this distance of its plane, in model units;
+    /// `None` for the default, which depends on the size of the coordinates.
     pub contact_tolerance: Option<f64>,
     /// Visible strokes shorter than this are dropped, and hidden gaps shorter than this between two
     /// visible pieces of one edge are closed. In millimeters on paper.
@@ -61,19 +61,19 @@ pub struct DrawOptions {
     /// Join only pieces of one kind and one `qi`, so that a stroke's attributes apply to all of it.
     /// Otherwise everything that one pen draws is joined.
     pub apart_by_kind: bool,
-    /// Width of the pen in millimeters: what is nearer than that cannot be told apart on paper. Zero
-    /// leaves strokes as they are chained.
+    /// Pen width in millimeters: lines closer than this cannot be distinguished on paper. Zero leaves the
+    /// chained strokes unchanged.
     pub pen_width_mm: f64,
-    /// Draw ink once where it lies on other ink: visible over hidden lines, and more important over
-    /// less important ones. Otherwise only lines with exactly the same image are drawn once.
+    /// Draw overlapping ink once: visible over hidden lines, and more important over less important ones.
+    /// Otherwise only lines with exactly the same image are drawn once.
     pub drops_overlaps: bool,
-    /// How close ink lies on other ink, in millimeters; `None` for half the pen's width.
+    /// How close ink must be to count as overlapping, in millimeters; `None` for half the pen width.
     pub overlap_mm: Option<f64>,
-    /// Least distance between the middles of lines that run beside each other, in millimeters: where
-    /// there is less, the less important one ends. `None` for any distance.
+    /// Minimum distance between the centerlines of lines that run beside each other, in millimeters: where
+    /// they are closer, the less important one ends. `None` for any distance.
     pub thin_mm: Option<f64>,
-    /// How far lines stop short of nearer silhouettes, borders and wires, in millimeters, measured
-    /// across these. Zero for not at all.
+    /// How far lines stop short of nearer silhouettes, boundaries and wires, in millimeters, measured across
+    /// them. Zero for no gap.
     pub halo_mm: f64,
 }
 
@@ -99,7 +99,7 @@ impl Default for DrawOptions {
 }
 
 impl DrawOptions {
-    /// Which kinds of line.
+    /// Which kinds of lines to draw.
     #[must_use]
     pub fn lines(self, lines: LineSelection) -> Self {
         Self { lines, ..self }
@@ -111,7 +111,7 @@ impl DrawOptions {
         self.lines(LineSelection::all_edges())
     }
 
-    /// The angle in degrees above which faces that meet make a crease.
+    /// The angle in degrees above which faces that meet form a crease.
     #[must_use]
     pub fn crease_deg(self, crease_deg: f64) -> Self {
         Self { crease_deg, ..self }
@@ -129,8 +129,7 @@ impl DrawOptions {
         Self { hidden_levels: Some(levels), ..self }
     }
 
-    /// A triangle does not cover a segment whose ends are both within this distance of its plane, in
-    /// model units.
+    /// A triangle does not hide a segment if both ends lie within this distance of its plane, in model units.
     #[must_use]
     pub fn contact_tolerance(self, distance: f64) -> Self {
         Self { contact_tolerance: Some(distance), ..self }
@@ -143,14 +142,15 @@ impl DrawOptions {
         Self { shortest_stroke_mm: length_mm, ..self }
     }
 
-    /// Which visible-line algorithm; all give the same drawing.
+    /// The hidden-line algorithm; all give the same drawing.
     #[must_use]
     pub fn engine(self, engine: LineEngine) -> Self {
         Self { engine, ..self }
     }
 
-    /// One two-point stroke for each maximal visible interval, nothing tidied. Equal faces must be kept
-    /// when the scene is built: [`SceneBuilder::keep_equal_faces`](crate::SceneBuilder::keep_equal_faces).
+    /// Draws one two-point stroke for each maximal visible interval, without tidying. Equal faces must be
+    /// kept when the scene is built:
+    /// [`SceneBuilder::keep_equal_faces`](crate::SceneBuilder::keep_equal_faces).
     #[must_use]
     pub fn exact(self) -> Self {
         Self { exact: true, ..self }
@@ -180,18 +180,18 @@ impl DrawOptions {
     }
 }
 
-/// A drawing, and what it took to make it.
+/// A drawing, with statistics of how it was made.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DrawOutput {
     /// The strokes.
     pub drawing: Strokes,
-    /// The engine that found what is hidden, by its name on the command line.
+    /// The engine that removed hidden lines, by its name on the command line.
     pub engine: &'static str,
     /// How many edges and other lines of the scene were selected.
     pub n_lines: usize,
     /// How much work the engine did.
     pub counts: LineCounts,
-    /// How many decisions the floating-point filters left to exact arithmetic.
+    /// How many decisions needed exact arithmetic after the floating-point filters.
     pub n_exact: u64,
     /// What was joined and left out on paper.
     pub drafted: Drafted,
@@ -210,9 +210,9 @@ pub struct MeshSize {
     pub triangles: usize,
     /// Distinct edges of these faces, before clipping.
     pub edges: usize,
-    /// Lines of intersection, before any are selected for drawing.
+    /// Intersection lines, before any are selected for drawing.
     pub intersections: usize,
-    /// Pairs of triangles whose boxes touch, tested for lines of intersection.
+    /// Pairs of triangles whose boxes touch, tested for intersection lines.
     pub intersection_pairs: u64,
 }
 
@@ -232,12 +232,12 @@ impl MeshSize {
 
 /// Draws `scene` as `camera` sees it.
 ///
-/// Lines of intersection are drawn when the scene has them; see
+/// Intersection lines are drawn when the scene has them; see
 /// [`Scene::with_intersections`](crate::model::scene::Scene::with_intersections).
 ///
-/// `mm_per_unit` is the number of millimeters on paper for one image unit, which the page knows from
-/// the scene's [`Extent`](crate::extent::Extent) alone. It turns the shortest stroke into a length in
-/// the image; where that is zero it does not matter.
+/// `mm_per_unit` is the number of millimeters on paper for one image unit, which the page knows from the
+/// scene's [`Extent`](crate::extent::Extent) alone. It converts the shortest stroke to a length in the image;
+/// if that is zero, it has no effect.
 pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: f64) -> DrawOutput {
     let mut seconds = Seconds::default();
     let view = timed(&mut seconds.classify, || view(scene, camera, options, mm_per_unit));
@@ -279,7 +279,7 @@ pub fn draw(scene: &Scene, camera: &Camera, options: &DrawOptions, mm_per_unit: 
     DrawOutput { drawing, engine, n_lines, counts, n_exact, drafted, seconds }
 }
 
-/// What a camera sees of a scene, with the lines to draw.
+/// A scene as a camera sees it, with the lines to draw.
 fn view<'a>(
     scene: &'a Scene,
     camera: &Camera,

@@ -1,4 +1,4 @@
-//! How much of the image something takes up. A page is fitted to this box before any line is chosen.
+//! The extent of something in the image. A page is fitted to this box before any line is chosen.
 //!
 //! ```text
 //!         y                           In perspective, points near the eye's own plane have images
@@ -122,7 +122,7 @@ impl Extent {
     }
 }
 
-/// What of the image is fitted at most, to each side of the direction of view.
+/// The widest part of the image that is fitted, to each side of the direction of view.
 fn widest() -> DVec2 {
     DVec2::splat(libm::tan(WIDEST_FITTED_ANGLE_DEG.to_radians()))
 }

@@ -9,12 +9,12 @@
 //! # Ok::<(), hiddenline::Error>(())
 //! ```
 //!
-//! A [`Scene`] is read once and drawn from any number of views. A [`Drawing`] goes on paper, and the
-//! [`Sheet`] into a file: SVG, PDF, DXF, PNG, HPGL or G-code. The program `hiddenline` does the same from
-//! the command line.
+//! A [`Scene`] is read once and drawn from any number of views. A [`Drawing`] goes onto paper, and the
+//! resulting [`Sheet`] into a file: SVG, PDF, DXF, PNG, HPGL or G-code. The program `hiddenline` does the
+//! same from the command line.
 //!
-//! Scenes come from files, or from arrays in memory, and you can also get the strokes as points. The view
-//! is given by its azimuth and elevation in degrees:
+//! Scenes come from files or from arrays in memory, and you can also get the strokes as points. Here azimuth
+//! and elevation, in degrees, give the view:
 //!
 //! ```
 //! use hiddenline::{DrawOptions, HiddenLines, Paper, Scene, View};
@@ -31,7 +31,7 @@
 //! # Ok::<(), hiddenline::Error>(())
 //! ```
 //!
-//! Models are z up unless you say otherwise, and light makes tone, in hatch lines with exact shadows:
+//! Models are z up by default. Hatch lines shade a drawing, with exact shadows:
 //!
 //! ```
 //! use hiddenline::{DrawOptions, Ground, HatchOptions, Paper, Scene, UpAxis, View};
@@ -61,8 +61,8 @@
 //! # Ok::<(), hiddenline::Error>(())
 //! ```
 //!
-//! A [`Surface`], either z = f(x, y) or parametric in space, is drawn in the same way, from a formula, a function, a file of
-//! heights, or points:
+//! A [`Surface`], either z = f(x, y) or parametric in space, is drawn in the same way from a formula, a
+//! function, a file of heights, or points:
 //!
 //! ```
 //! use hiddenline::{Paper, Surface, SurfaceLines, View};
@@ -94,7 +94,7 @@
 //!       │               invisibility        │      │
 //!       │                    └──► chain ◄───┼──────┘
 //!       │                          ▼        │
-//!       │                       drafting: the lines a draughtsman would draw
+//!       │                       drafting: the lines a drafter would draw
 //!       ├─► engines::face          ▼        │
 //!       │   visible areas  strokes: polylines in the image ◄─ axes
 //!       ▼        │                 │        │
@@ -108,26 +108,26 @@
 //!                               write ─► bytes
 //! ```
 //!
-//! `draw` runs the stages from a scene to strokes, and `draw::surface` those from a surface. The
-//! page is placed first: it needs only the `extent` of what is drawn, so lengths on paper are known
-//! before any line is chosen. `predicates` make every decision on the way. `engines::image` finds
-//! the face that each pixel shows; `shading::preview` shades it. `hatch` cuts the faces with families of
-//! planes and asks `engines::edge` twice about each segment: from the eye, and from the light. To read
-//! the code, take the modules in the order of `stages` in `src/lib.rs`: no module uses a later one, and
-//! no two files use each other in a circle. `cargo test --test it laws::layers` checks that.
+//! `draw` runs the stages from a scene to strokes, and `draw::surface` those from a surface. The page is
+//! placed first: it needs only the `extent` of the drawing, so lengths on paper are known before any line is
+//! chosen. `predicates` makes every decision along the way. `engines::image` finds the face that each pixel
+//! shows; `shading::preview` shades it. `hatch` cuts the faces with families of planes and asks
+//! `engines::edge` twice about each segment: from the eye, and from the light. To read the code, follow the
+//! order of `stages` in `src/lib.rs`: no module uses a later one, and files do not depend on each other in a
+//! circle. `cargo test --test it laws::layers` checks that.
 //!
 //! # What is exact
 //!
-//! Vertices as read (`f64`) *are* the scene. Every decision (which side, in front or behind, front or
-//! back face, the order of two cuts) is the sign of a polynomial in those numbers and is decided
-//! exactly by `predicates`; nothing is compared against a tolerance. Only end points of visible
-//! pieces and image coordinates are rounded, each once. Points where faces cross are not vertices, but
-//! they enter decisions unrounded too.
+//! Vertices as read (`f64`) *are* the scene. Every decision (which side, in front or behind, front or back
+//! face, the order of two cuts) is the sign of a polynomial in those numbers and is decided exactly by
+//! `predicates`; nothing is compared against a tolerance. Only endpoints of visible pieces and image
+//! coordinates are rounded, each once. Points where faces cross are not vertices, but decisions use them
+//! unrounded as well.
 //!
 //! # Features
 //!
-//! All are on by default, for the program. A library that only draws can leave them out with
-//! `default-features = false`: OBJ, STL and OFF are always read, and SVG and DXF written.
+//! All features are on by default, for the program. A library that only draws can turn them off with
+//! `default-features = false`: OBJ, STL and OFF can always be read, and SVG and DXF written.
 //!
 //! | feature | adds |
 //! |---|---|
@@ -144,8 +144,8 @@
 //! World: model units, right-handed, z up. Image: see `camera`. Page: millimeters, see `plot`.
 //! Angles are in radians unless a name ends in `_deg`.
 
-/// The stages, in the order of the data flow. They serve the program and the tests of this crate
-/// and may change at any time.
+/// The stages, in the order of the data flow. They are for the program and the tests of this crate, and may
+/// change at any time.
 #[doc(hidden)]
 #[path = ""]
 pub mod stages {
@@ -250,7 +250,7 @@ pub use plot::{Layer, Pen, Plot, Polylines};
 pub use optimize::{Effort, OptimizeOptions};
 pub use write::{Format, Target};
 
-/// What each kind of [`Error`] is made of.
+/// The errors inside each kind of [`Error`].
 pub mod errors {
     pub use crate::camera::framing::ViewError;
     pub use crate::draw::surface::SurfaceError;

@@ -1,4 +1,4 @@
-//! Pieces that are joined end to end in pairs, and the trails they make.
+//! Pieces joined end to end in pairs, and the trails that they form.
 //!
 //! ```text
 //!   piece     0          2          1            ends are numbered 2 · piece + side;

@@ -6,11 +6,11 @@
 //!          │   ┌──────────────────┐                              │ ╱  │
 //!          │   │     ╱│           │                              └────┴──► x
 //!          │   │   ╱  │           │               page_from_image: one scale for both
-//!          │   └──────────────────┘               axes, y turned downwards, a shift
+//!          │   └──────────────────┘               axes, y turned downward, a shift
 //!          ▼ y, mm
 //! ```
 //!
-//! Nothing is written outside the margins: lines that would leave are cropped there.
+//! Nothing is written outside the margins: lines that would cross them are cropped there.
 
 mod areas;
 mod dash;
@@ -37,17 +37,17 @@ pub use self::pens::{
 };
 pub use self::refit::{Crop, Cropped, RefitOptions, crop_to, refit};
 
-/// Empty border of the page in millimeters, unless set otherwise.
+/// The default margin of the page in millimeters.
 pub const DEFAULT_MARGIN_MM: f64 = 10.0;
 
-/// Width of the pen's line in millimeters, unless set otherwise.
+/// The default line width of the pen in millimeters.
 pub const DEFAULT_PEN_WIDTH_MM: f64 = 0.3;
 
-/// Cropping leaves alone what is outside the margins by less than half of the last digit that
-/// writers write, and moves it onto the margin: such points are there by rounding only.
+/// Cropping does not cut points that are outside the margins by less than half of the last digit written, but
+/// moves them onto the margin: they are there only through rounding.
 const CROP_SLACK_MM: f64 = 0.0005;
 
-/// Which way the paper lies.
+/// The orientation of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Orientation {
     /// At least as wide as high.
@@ -62,15 +62,15 @@ pub enum Placement {
     /// As large as the margins allow, centered.
     #[default]
     Fit,
-    /// At a scale, centered. In perspective it holds at the distance of the target.
+    /// At a scale, centered. In perspective it applies at the distance of the target.
     Scale {
         /// Millimeters on paper for one model unit.
         mm_per_unit: f64,
     },
     /// The height between the margins is exactly the vertical field of view.
     FieldOfView,
-    /// The height between the margins shows this height at the target, which is in the middle, in
-    /// either projection.
+    /// The height between the margins shows this height at the target, which is centered, in either
+    /// projection.
     ViewHeight {
         /// The height in model units.
         model_units: f64,
@@ -90,9 +90,9 @@ pub enum Placement {
 pub struct PageOptions {
     /// The sheet.
     pub paper: Paper,
-    /// Which way it lies; `None` to suit the drawing.
+    /// Its orientation; `None` to suit the drawing.
     pub orientation: Option<Orientation>,
-    /// Empty border on all four sides.
+    /// Margin on all four sides.
     pub margin_mm: f64,
     /// How large the drawing is.
     pub placement: Placement,
@@ -110,7 +110,7 @@ impl Default for PageOptions {
 }
 
 impl PageOptions {
-    /// The whole sheet but for this border, in millimeters.
+    /// Leaves a margin of this width on all sides, in millimeters.
     #[must_use]
     pub fn margin_mm(self, margin_mm: f64) -> Self {
         Self { margin_mm, ..self }
@@ -128,13 +128,13 @@ impl PageOptions {
         Self { orientation: Some(Orientation::Portrait), ..self }
     }
 
-    /// At a scale instead of fitted: this many millimeters on paper for one model unit.
+    /// Draws at a scale instead of fitting: this many millimeters on paper for one model unit.
     #[must_use]
     pub fn scale(self, mm_per_unit: f64) -> Self {
         Self { placement: Placement::Scale { mm_per_unit }, ..self }
     }
 
-    /// Shows this height, in model units at the target, with the target in the middle.
+    /// Shows this height, in model units at the target, with the target at the center.
     #[must_use]
     pub fn view_height(self, model_units: f64) -> Self {
         Self { placement: Placement::ViewHeight { model_units }, ..self }
@@ -156,7 +156,7 @@ impl From<Paper> for PageOptions {
 /// Why a drawing cannot be placed on a page.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PageError {
-    /// Nothing of the sheet is left between the margins.
+    /// The margins leave no room on the sheet.
     #[error("margins of {margin_mm} mm leave no room on a page of {width_mm} x {height_mm} mm")]
     Margins {
         /// The margin.
@@ -180,28 +180,28 @@ pub enum PageError {
 /// A sheet of paper and the map of the image onto it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Page {
-    /// The paper as it lies.
+    /// The paper, in its orientation.
     pub paper: Paper,
-    /// Empty border on all four sides.
+    /// Margin on all four sides.
     pub margin_mm: f64,
-    /// Image coordinates (y upwards) to page millimeters (y downwards).
+    /// Image coordinates (y upward) to page millimeters (y downward).
     pub page_from_image: DAffine2,
 }
 
-/// What the pens draw and how it is labeled.
+/// What the pens draw, and the labels of their layers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotOptions {
-    /// Width of the lines of pens without a rule, in millimeters.
+    /// Line width of pens without a rule, in millimeters.
     pub pen_width_mm: f64,
-    /// Which pens draw what.
+    /// Which pens draw which strokes.
     pub pens: Vec<PenRule>,
     /// Hidden lines: none, dashed, or solid.
     pub hidden: HiddenLines,
-    /// Lengths of dashes and gaps; `None` for those that suit each pen's width.
+    /// Lengths of dashes and gaps; `None` to suit each pen width.
     pub dash: Option<Dash>,
     /// Whether dashed lines stay whole, on layers that name the pattern, for a format that draws it.
     pub keep_dashes_whole: bool,
-    /// What the drawing shows.
+    /// The title of the drawing.
     pub title: String,
     /// The command that made it; empty for none.
     pub source: String,
@@ -226,12 +226,12 @@ impl Default for PlotOptions {
 pub struct PlacedPlot {
     /// The plot.
     pub plot: Plot,
-    /// Whether lines were cut off at the margins.
+    /// Whether lines were cropped at the margins.
     pub cropped: bool,
 }
 
 impl Page {
-    /// Chooses orientation and map for what takes up `extent` of the image.
+    /// Chooses the orientation and the map for a drawing with this `extent`.
     ///
     /// # Errors
     /// See [`PageError`].
@@ -314,10 +314,10 @@ impl Page {
 
     /// Maps strokes onto the page, crops them to the margins and gives each to its pen.
     ///
-    /// A visible stroke is drawn by the pen of the outline if it is part of that, or else by the pen
-    /// of its kind, and a hidden one by the pen of its level, if there are rules for these; all others
-    /// by the one of visible or hidden strokes: unless there are rules, visible ones are
-    /// layer 1 and hidden ones, if drawn, layer 2. Strokes keep their order. O(points + dashes).
+    /// If there are rules for them, a stroke of the outline is drawn by the pen of the outline, any other
+    /// visible stroke by the pen of its kind, and a hidden one by the pen of its level. All others are drawn
+    /// by the pen of visible or hidden strokes: by default, visible ones are layer 1 and hidden ones, if
+    /// drawn, layer 2. Strokes keep their order. O(points + dashes).
     pub fn plot(&self, drawing: &Strokes, options: PlotOptions) -> PlacedPlot {
         let window = self.window();
         let mut holder = pens::Holder::new(&options);

@@ -1,7 +1,7 @@
-//! A finished page: polylines and filled areas in millimeters, one layer per pen. Writers write it.
+//! A finished page: polylines and filled areas in millimeters, one layer per pen, ready for the writers.
 //!
 //! Page coordinates have their origin at the top left corner of the paper, x to the right and y
-//! *downwards*, in millimeters.
+//! *downward*, in millimeters.
 
 use std::borrow::Cow;
 
@@ -18,12 +18,12 @@ pub struct Plot {
     pub title: String,
     /// The command that made it, for the file's metadata; empty for none.
     pub source: String,
-    /// One layer a pen, in drawing order.
+    /// One layer per pen, in drawing order.
     pub layers: Vec<Layer>,
 }
 
 impl Plot {
-    /// The same with other layers, without a copy of its own.
+    /// The same plot with other layers, without copying its own layers.
     #[must_use]
     pub fn with_layers(&self, layers: Vec<Layer>) -> Self {
         let Self { width_mm, height_mm, title, source, .. } = self;
@@ -31,7 +31,7 @@ impl Plot {
         Self { width_mm: *width_mm, height_mm: *height_mm, title, source, layers }
     }
 
-    /// The layers that machines draw: all but those that [`Layer::is_plotted`] excludes.
+    /// The layers that machines draw: those for which [`Layer::is_plotted`] holds.
     pub fn plotted_layers(&self) -> impl Iterator<Item = &Layer> {
         self.layers.iter().filter(|layer| layer.is_plotted())
     }
@@ -55,14 +55,14 @@ pub struct Layer {
     /// Polylines in page millimeters; a closed one ends at its first point.
     pub lines: Polylines,
     /// Dash and gap in millimeters, for formats that have dash patterns; the lines are then whole.
-    /// `None` for lines that are drawn as they are.
+    /// `None` for solid lines.
     pub dash_mm: Option<[f64; 2]>,
-    /// Areas in page millimeters, painted in their order and before the lines. Plotters have none.
+    /// Areas in page millimeters, painted in order and before the lines. Plots for plotters have none.
     pub fills: Fills,
 }
 
 impl Layer {
-    /// The same with other lines, without a copy of its own.
+    /// The same layer with other lines, without copying its own lines.
     #[must_use]
     pub fn with_lines(&self, lines: Polylines) -> Self {
         let Self { number, name, label, pen, dash_mm, fills, .. } = self;
@@ -95,7 +95,7 @@ impl Layer {
         self.label.as_ref().is_some_and(|label| label.trim_start().starts_with('!'))
     }
 
-    /// Pen-down speed in percent of the machine's highest that the label asks for, as in `2 +S40`.
+    /// Pen-down speed requested by the label, in percent of the highest speed, as in `2 +S40`.
     /// AxiDraw's software takes 1 to 110.
     pub fn speed_percent(&self) -> Option<u32> {
         let label = self.label.as_ref()?.trim_start_matches(['%', '!', ' ']);
@@ -111,7 +111,7 @@ impl Layer {
 /// What draws a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pen {
-    /// Width of its line in millimeters.
+    /// Its line width in millimeters.
     pub width_mm: f64,
     /// Color as `#rrggbb`.
     pub color: String,
@@ -188,9 +188,9 @@ pub struct Fills {
     ring_ends: Vec<u32>,
     outlines: Polylines,
     areas: Vec<AreaEnds>,
-    /// Each area is also outlined in its own color with a line of this width, so that no background
-    /// shines through between neighbors where a screen or printer smooths their borders. 0 leaves
-    /// areas as they are, as machines that cut want it.
+    /// Each area is also outlined in its own color with a line of this width, so that no background shows
+    /// through between neighbors where a screen or printer antialiases edges. 0 leaves areas unchanged, for
+    /// cutting machines.
     pub seam_mm: f64,
 }
 
@@ -282,7 +282,7 @@ impl Fills {
         self.points.len()
     }
 
-    /// The areas in the order of painting.
+    /// The areas in paint order.
     pub fn iter(&self) -> impl Iterator<Item = Area<'_>> {
         self.areas.iter().scan(AreaEnds::default(), |before, &ends| {
             let rings = (before.rings, ends.rings);

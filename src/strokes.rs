@@ -14,9 +14,9 @@ pub enum StrokeKind {
     Silhouette,
     /// Between two faces that meet at more than the crease angle.
     Crease,
-    /// On one face only.
+    /// Edge of only one face.
     Boundary,
-    /// On three faces or more.
+    /// Edge of three or more faces.
     Nonmanifold,
     /// Where two faces pierce each other.
     Intersection,
@@ -40,13 +40,13 @@ pub enum StrokeKind {
     Hatch,
     /// The outline of a shadow.
     Shadow,
-    /// The height at a level curve, written in a gap of it.
+    /// The height of a level curve, written in a gap.
     Label,
     /// Where a range of heights cuts a surface off.
     Cut,
     /// A level curve drawn on the base of the box around a surface.
     LevelBase,
-    /// An edge of that box that is no axis.
+    /// An edge of that box that is not an axis.
     Box,
     /// The grid and the edges of the box's faces behind the surface.
     Back,
@@ -54,10 +54,10 @@ pub enum StrokeKind {
     Title,
 }
 
-/// Which part of a surface a line is of.
+/// The part of a surface that a line belongs to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SurfacePart {
-    /// The sheet, counted from 1; 0 if the line is of none, or of several.
+    /// The sheet, counted from 1; 0 if the line belongs to none, or to several.
     pub sheet: u16,
     /// The level of a level curve, counted from 1 for the lowest; 0 for other lines.
     pub level: u16,
@@ -141,7 +141,7 @@ impl StrokeKind {
     }
 }
 
-/// What happens to hidden lines.
+/// How hidden lines are drawn.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HiddenLines {
     /// Not drawn.
@@ -174,14 +174,14 @@ pub struct Stroke<'a> {
     pub kind: StrokeKind,
     /// Quantitative invisibility: how many triangles hide it; 0 is visible.
     pub qi: u32,
-    /// Whether it is part of the outline: only the background is seen beside it. Known only where the
+    /// Whether it is part of the outline: it is seen against the background. Known only where the
     /// outline was requested.
     pub outline: bool,
     /// Whether it is a line of a surface seen from below. Known only where undersides were requested.
     pub underside: bool,
     /// Whether the light reaches it. Known only for exact hatching.
     pub lit: Option<bool>,
-    /// Which part of a surface it is of.
+    /// The part of a surface that it belongs to.
     pub part: SurfacePart,
     /// Two points or more in image coordinates; a closed stroke ends at its first point.
     pub points: &'a [DVec2],
@@ -226,8 +226,8 @@ impl Strokes {
         }
     }
 
-    /// Appends a stroke with all of its attributes but other points. One of fewer than two points is left
-    /// out.
+    /// Appends a stroke with the attributes of another, but with other points. One of fewer than two points
+    /// is left out.
     pub fn push_like(&mut self, stroke: &Stroke, points: impl IntoIterator<Item = DVec2>) {
         let Stroke { kind, qi, outline, underside, lit, part, .. } = *stroke;
         let n = self.heads.len();
@@ -311,7 +311,7 @@ impl Strokes {
         })
     }
 
-    /// What of the image the strokes take up. O(points).
+    /// The extent of the strokes in the image. O(points).
     pub fn extent(&self, camera: &Camera) -> Extent {
         Extent::of_polylines(self.iter().map(|stroke| stroke.points), camera)
     }

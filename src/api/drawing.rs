@@ -1,4 +1,4 @@
-//! A view of a scene, to be put on paper.
+//! A view of a scene, to put on paper.
 
 use rayon::prelude::*;
 
@@ -15,11 +15,10 @@ use crate::strokes::{StrokeKind, Strokes};
 
 /// What to draw: a scene, a view of it, and which lines.
 ///
-/// Nothing is computed before the paper is known, since what is too short to draw, for example, is
-/// a matter of millimeters. [`on`](Self::on) puts the drawing on paper;
-/// [`strokes`](Self::strokes) gives its polylines.
+/// Nothing is computed until the paper is known, since what is too short to draw, for example, is measured in
+/// millimeters. [`on`](Self::on) puts the drawing on paper; [`strokes`](Self::strokes) gives its polylines.
 #[derive(Debug, Clone)]
-#[must_use = "a drawing does nothing until it is put on paper"]
+#[must_use = "a drawing does nothing until you put it on paper"]
 pub struct Drawing<'a> {
     scene: &'a Scene,
     view: View,
@@ -61,7 +60,7 @@ impl Scene {
     /// The sheets come in the order of the views.
     ///
     /// # Errors
-    /// A view makes no camera, or a drawing cannot be placed on the page.
+    /// A view is not a valid camera, or a drawing cannot be placed on the page.
     pub fn draw_views(
         &self,
         views: &[View],
@@ -72,9 +71,9 @@ impl Scene {
         views.par_iter().map(|view| self.draw(view, lines).on(page)).collect()
     }
 
-    /// Draws the scene as each of `views` shows it, all at one scale and place on the page, so that they
-    /// can be laid over each other or shown as a film. In parallel; the sheets come in the order of the
-    /// views.
+    /// Draws the scene as each of `views` shows it, all with the same scale and position on the page, so that
+    /// they can be overlaid or shown as an animation. The sheets are drawn in parallel and come in the order
+    /// of the views.
     ///
     /// # Errors
     /// As for [`draw_views`](Self::draw_views).
@@ -102,11 +101,11 @@ impl Scene {
         views.par_iter().map(|view| drawing(view).on(page)).collect()
     }
 
-    /// The views on the way once around the vertical through what `view` looks at, at `n` equal angles,
-    /// `view` itself first.
+    /// Views of one turn around the vertical axis through the target of `view`, at `n` equal angles, starting
+    /// with `view` itself.
     ///
     /// # Errors
-    /// A view makes no camera.
+    /// A view is not a valid camera.
     pub fn turntable(&self, view: &View, n: u32) -> Result<Vec<View>, Error> {
         let camera = view.camera(self.mesh().bounds().unwrap_or_default())?;
         let cameras = camera.turntable(n).map_err(ViewError::from)?;
@@ -115,25 +114,25 @@ impl Scene {
 }
 
 impl Drawing<'_> {
-    /// What the drawing is called; written into files.
+    /// The title of the drawing, which is written into files.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.plot.title = title.into();
         self
     }
 
-    /// Width of the pen's line in millimeters; 0.3 unless set.
+    /// Line width of the pen in millimeters; 0.3 unless set.
     pub fn pen_width_mm(mut self, width_mm: f64) -> Self {
         self.plot.pen_width_mm = width_mm;
         self
     }
 
-    /// Which pens draw what; by default one draws the visible lines and one the hidden ones.
+    /// Which pens draw which lines; by default one draws the visible lines and another the hidden lines.
     pub fn pens(mut self, pens: impl IntoIterator<Item = PenRule>) -> Self {
         self.plot.pens = pens.into_iter().collect();
         self
     }
 
-    /// Lengths of the dashes and gaps of hidden lines; see [`HiddenLines::Dashed`](crate::HiddenLines::Dashed).
+    /// Lengths of dashes and gaps in hidden lines; see [`HiddenLines::Dashed`](crate::HiddenLines::Dashed).
     pub fn dash(mut self, dash: Dash) -> Self {
         self.plot.dash = Some(dash);
         self
@@ -145,10 +144,10 @@ impl Drawing<'_> {
         self
     }
 
-    /// Hatches the faces by the light, with exact shadows, on a layer of its own.
+    /// Hatches the faces according to the light, with exact shadows, on a separate layer.
     ///
-    /// Outlines of shadows are lines of the kind [`StrokeKind::Shadow`]; they take light and ground from
-    /// here, too.
+    /// Outlines of shadows are lines of the kind [`StrokeKind::Shadow`]; they also take the light and the
+    /// ground from here.
     ///
     /// ```no_run
     /// use hiddenline::{DrawOptions, Ground, HatchOptions, Paper, Scene, View};
@@ -163,11 +162,11 @@ impl Drawing<'_> {
         self
     }
 
-    /// Puts the drawing on a sheet of paper, by default as large as a margin of 10 mm allows.
+    /// Puts the drawing on a sheet of paper, by default fitted to it with a margin of 10 mm.
     ///
     /// # Errors
-    /// The view makes no camera, the drawing cannot be placed on the page, or the areas cannot be
-    /// filled as asked.
+    /// The view is not a valid camera, the drawing cannot be placed on the page, or the faces cannot be
+    /// filled as requested.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
         let (camera, page) = self.place(page.into())?;
         let lines = DrawOptions { pen_width_mm: self.plot.pen_width_mm, ..self.lines };

@@ -18,26 +18,26 @@ use crate::surface::formula::{FormulaError, ParameterError};
 use crate::surface::{FamilyError, GridError, HeightError};
 use crate::write::WriteError;
 
-/// Why there is no drawing.
+/// Why a drawing failed.
 #[derive(Debug, ThisError)]
 #[non_exhaustive]
 pub enum Error {
     /// A model file cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The faces make no mesh.
+    /// The faces do not form a valid mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// A text is not a formula.
+    /// A text is not a valid formula.
     #[error(transparent)]
     Formula(#[from] FormulaError),
-    /// A name or a value makes no parameter of formulas.
+    /// A name or a value cannot be a parameter of formulas.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// There are no sheets for values of parameters.
+    /// Sheets cannot be made for the values of parameters.
     #[error(transparent)]
     Family(#[from] FamilyError),
-    /// The samples of a surface make no grid.
+    /// The samples of a surface do not form a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
     /// No surface goes through the points.
@@ -55,22 +55,22 @@ pub enum Error {
     /// The surface cannot be drawn.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// The view makes no camera.
+    /// The view is not a valid camera.
     #[error(transparent)]
     View(#[from] ViewError),
     /// The drawing cannot be placed on the page.
     #[error(transparent)]
     Page(#[from] PageError),
-    /// The faces cannot be filled as asked.
+    /// The faces cannot be filled as requested.
     #[error(transparent)]
     Fill(#[from] FillError),
-    /// The faces cannot be hatched as asked.
+    /// The faces cannot be hatched as requested.
     #[error(transparent)]
     Hatch(#[from] HatchError),
-    /// The name of the output file does not say a format that can be written.
+    /// The extension of the output file does not name a format that can be written.
     #[error("{}: the extension names no format; use one of {}", .0.display(), crate::write::known_extensions())]
     UnknownFormat(PathBuf),
-    /// The format cannot show this sheet, or its machine is not known.
+    /// The format cannot hold this sheet, or its machine is unknown.
     #[error("{}: {error}", path.display())]
     Write {
         /// The file.

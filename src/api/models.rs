@@ -12,10 +12,9 @@ use crate::model::smooth::{SmoothParts, smooth as refine};
 use crate::read::{Model, ModelFormat, Warning, read_bytes, read_file};
 
 impl Scene {
-    /// Reads one model file, z up. The extension says its format, or else the content.
+    /// Reads one model file, z up. The format follows from the extension, or else from the content.
     ///
-    /// [`Scene::builder`] puts several models together, turns models made with y up, and merges
-    /// vertices.
+    /// [`Scene::builder`] combines several models, turns models made with y up, and merges vertices.
     ///
     /// # Errors
     /// The file cannot be read, is damaged, or has no faces.
@@ -109,17 +108,17 @@ impl SceneBuilder {
         self
     }
 
-    /// Keeps all of several equal faces, for exact drawings. Unless set, one of them is left.
+    /// Keeps duplicate faces, for exact drawings. Unless set, only one of each is kept.
     pub fn keep_equal_faces(mut self) -> Self {
         self.keeps_equal_faces = true;
         self
     }
 
-    /// Refines curved parts until no edge's middle is farther than `tolerance`, in model units, from the
+    /// Refines curved parts until no edge midpoint is farther than `tolerance`, in model units, from the
     /// curved surface: facets no longer show in silhouettes. Flat faces stay flat.
     ///
-    /// It stops at four million triangles. A quarter of the pen's width, over the millimeters that a model
-    /// unit has on paper, is a tolerance that cannot be seen.
+    /// It stops at four million triangles. A quarter of the pen width, divided by the millimeters per model
+    /// unit on paper, is a tolerance too small to see.
     ///
     /// ```
     /// use hiddenline::{Scene, SmoothParts, UpAxis};
@@ -199,8 +198,8 @@ impl SceneBuilder {
         &self.warnings
     }
 
-    /// Puts the models together, merges equal faces, and finds everything that no view changes: edges,
-    /// triangles, lines of intersection.
+    /// Combines the models, merges equal faces, and finds everything that does not depend on the view: edges,
+    /// triangles, intersection lines.
     ///
     /// # Errors
     /// A coordinate becomes infinite, or there are too many faces for one mesh.
@@ -222,7 +221,7 @@ impl SceneBuilder {
     }
 }
 
-/// The scene with all lines that can be asked for.
+/// The scene with all lines that a drawing can select.
 fn complete(mesh: Mesh) -> Scene {
     Scene::new(mesh).with_bends().with_flush_edges().with_intersections()
 }

@@ -1,4 +1,4 @@
-//! A sheet of paper with a drawing on it, and its way into a file.
+//! A sheet of paper with a drawing on it, and how to save it.
 
 use std::fs;
 use std::path::Path;
@@ -38,13 +38,13 @@ impl Sheet {
         self.placed.plot.layers.iter().all(|l| l.lines.is_empty() && l.fills.is_empty())
     }
 
-    /// Whether lines were cut off at the margins.
+    /// Whether lines were cropped at the margins.
     pub fn is_cropped(&self) -> bool {
         self.placed.cropped
     }
 
-    /// What is worth knowing about the drawing of a surface: for example, that its lines are farther
-    /// from the function than they should be.
+    /// Notes on the drawing of a surface: for example, if its lines are farther from the function than they
+    /// should be.
     pub fn notes(&self) -> &[SurfaceNote] {
         &self.notes
     }
@@ -56,15 +56,15 @@ impl Sheet {
         self.optimized_with(&OptimizeOptions::for_drawings())
     }
 
-    /// The same with options.
+    /// Like [`optimized`](Self::optimized), with options.
     #[must_use]
     pub fn optimized_with(mut self, options: &OptimizeOptions) -> Self {
         self.placed.plot = optimize(&self.placed.plot, options).0;
         self
     }
 
-    /// Writes a file; the extension says the format: svg, pdf, dxf, png, or hpgl and gcode for the
-    /// default machines. An existing file is replaced only when all is written.
+    /// Writes a file in the format of its extension: svg, pdf, dxf, png, or hpgl and gcode for the default
+    /// machines. An existing file is replaced only after everything is written.
     ///
     /// # Errors
     /// The extension names no format, the format's feature is off, or the file cannot be written.
@@ -93,8 +93,8 @@ impl Sheet {
         self.save_as(path, &Target::Png(Resolution::WidthPx(width_px), Marks::default()))
     }
 
-    /// Writes a file of any format, for any machine (see [`Target`]). An existing file is replaced only
-    /// when all is written.
+    /// Writes a file of any format, for any machine (see [`Target`]). An existing file is replaced only after
+    /// everything is written.
     ///
     /// # Errors
     /// The plot does not suit the target, or the file cannot be written.

@@ -1,4 +1,4 @@
-//! From formulas, heights or points to a surface, and a view of it to be put on paper.
+//! From formulas, heights or points to a surface, and a view of it to put on paper.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,7 @@ impl Surface {
     /// Reads a file of heights: rows of numbers, an ESRI ASCII grid, NPY, NPZ, or a gray PNG or TIFF,
     /// recognized by its content.
     ///
-    /// [`HeightField::open`] places the samples differently, and says what it skipped.
+    /// [`HeightField::open`] has options for placing the samples, and reports what it skipped.
     ///
     /// # Errors
     /// The file cannot be read, or holds no grid of heights.
@@ -48,7 +48,7 @@ impl Surface {
         }
     }
 
-    /// The surface as triangles between its samples, to be filled or put together with models.
+    /// The surface as triangles between its samples, to be filled or combined with models.
     ///
     /// # Errors
     /// The surface cannot be sampled, or no four neighboring samples have heights.
@@ -86,13 +86,13 @@ impl HeightField {
     }
 }
 
-/// What to draw of a surface: a view of it, and which lines.
+/// What to draw: a surface, a view of it, and which lines.
 ///
-/// Nothing is computed before the paper is known: how finely a formula is sampled depends on how far
-/// lines may be from its curves in millimeters. [`on`](Self::on) puts the drawing on paper;
-/// [`strokes`](Self::strokes) gives its polylines.
+/// Nothing is computed until the paper is known: how finely a formula is sampled depends on how far its lines
+/// may deviate in millimeters. [`on`](Self::on) puts the drawing on paper; [`strokes`](Self::strokes) gives
+/// its polylines.
 #[derive(Debug, Clone)]
-#[must_use = "a drawing does nothing until it is put on paper"]
+#[must_use = "a drawing does nothing until you put it on paper"]
 pub struct SurfaceDrawing<'a> {
     surface: &'a Surface,
     view: View,
@@ -102,26 +102,26 @@ pub struct SurfaceDrawing<'a> {
 }
 
 impl SurfaceDrawing<'_> {
-    /// What the drawing is called; written into files. [`SurfaceLines::axes`] draws a title.
+    /// The title of the drawing, which is written into files. [`SurfaceLines::axes`] draws a title.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.plot.title = title.into();
         self
     }
 
-    /// Width of the pen's line in millimeters; 0.3 unless set.
+    /// Line width of the pen in millimeters; 0.3 unless set.
     pub fn pen_width_mm(mut self, width_mm: f64) -> Self {
         self.plot.pen_width_mm = width_mm;
         self
     }
 
-    /// Which pens draw what; by default one pen draws everything. Where there is a legend, or a rule for
-    /// some of the lines, each of several sheets has a pen of its own.
+    /// Which pens draw which lines; by default one pen draws everything. If there are several sheets, and a
+    /// legend or a rule for some of the lines, each sheet has its own pen.
     pub fn pens(mut self, pens: impl IntoIterator<Item = PenRule>) -> Self {
         self.plot.pens = pens.into_iter().collect();
         self
     }
 
-    /// Also hatches the surface by its light, with lines of the kind [`StrokeKind::Hatch`](crate::StrokeKind).
+    /// Also hatches the surface according to its light, with lines of the kind [`StrokeKind::Hatch`](crate::StrokeKind).
     ///
     /// ```
     /// use hiddenline::{HatchOptions, Paper, Surface, SurfaceLines, View};
@@ -137,11 +137,11 @@ impl SurfaceDrawing<'_> {
         self
     }
 
-    /// Puts the drawing on a sheet of paper, by default as large as a margin of 10 mm allows.
+    /// Puts the drawing on a sheet of paper, by default fitted to it with a margin of 10 mm.
     ///
     /// # Errors
-    /// The surface cannot be sampled or drawn as asked, the view makes no camera, or the drawing cannot
-    /// be placed on the page.
+    /// The surface cannot be sampled or drawn as requested, the view is not a valid camera, or the drawing
+    /// cannot be placed on the page.
     pub fn on(&self, page: impl Into<PageOptions>) -> Result<Sheet, Error> {
         let mut plot = self.plot.clone();
         let (n_sheets, has_legend) = (self.surface.n_sheets(), self.lines.legend.is_some());

@@ -1,4 +1,4 @@
-//! The box around a surface, its faces and edges as an eye sees them.
+//! The box around a surface, with its faces and edges as an eye sees them.
 //!
 //! ```text
 //!        ┌──────────┐         front face: the eye is on its outer side

@@ -1,4 +1,4 @@
-//! Where axes, numbers and titles are, so that no text touches ink or other text.
+//! Placement of axes, numbers and titles so that no text touches ink or other text.
 
 use glam::{DVec2, DVec3, dvec2};
 
@@ -183,7 +183,7 @@ impl AxesLayout {
         &self.hull
     }
 
-    /// Whether an axis has other ticks than was asked for, because these would be too many.
+    /// Whether an axis has other ticks than requested, because these would be too many.
     pub fn has_too_many_ticks(&self) -> bool {
         self.has_too_many_ticks
     }
@@ -201,7 +201,7 @@ pub fn base_height(around: &AxesBox, camera: &Camera) -> f64 {
     bbox.side(2, bbox.is_front(2, false))
 }
 
-/// Whether a camera looks straight down or up in parallel projection, so that a surface is seen as a map.
+/// Whether a camera looks straight down or up in orthographic projection, so that a surface is seen as a map.
 pub fn is_straight_down(camera: &Camera) -> bool {
     let forward = camera.forward();
     camera.near_distance().is_none() && forward.x == 0.0 && forward.y == 0.0

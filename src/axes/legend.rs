@@ -1,4 +1,4 @@
-//! A legend: which line is what.
+//! A legend: which line stands for what.
 //!
 //! ```text
 //!            gap
@@ -64,14 +64,14 @@ impl LegendPlace {
     }
 }
 
-/// A line of a legend and what it is.
+/// An entry of a legend: sample lines and their text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendEntry {
-    /// What the line is.
+    /// The text of the entry.
     pub text: String,
-    /// The kinds and parts of what is shown, side by side.
+    /// The kinds and parts of the sample lines, side by side.
     pub samples: Vec<(StrokeKind, SurfacePart)>,
-    /// Lengths of dashes and gaps in turn, in millimeters on paper; empty for a whole line.
+    /// Lengths of dashes and gaps in turn, in millimeters on paper; empty for a solid line.
     pub dashes: &'static [f64],
 }
 

@@ -5,20 +5,20 @@ use super::ticks::TickRule;
 /// Axes around a surface: which lines, which numbers, and the titles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
-    /// Which lines; `None` for [`AxesStyle::Edges`], or [`AxesStyle::Frame`] where the surface is seen
-    /// from straight above or below in parallel projection.
+    /// Which lines; `None` for [`AxesStyle::Edges`], or [`AxesStyle::Frame`] in orthographic views from
+    /// straight above or below.
     pub style: Option<AxesStyle>,
     /// The titles.
     pub titles: Titles,
     /// How [`AxesStyle::Box`] draws the edges in front of the surface.
     pub box_front: BoxFront,
-    /// On which side of the drawing the z axis is.
+    /// The side of the drawing with the z axis.
     pub z_axis: ZAxis,
-    /// Which numbers the x, y and z axes have.
+    /// The numbers on the x, y and z axes.
     pub ticks: [TickRule; 3],
-    /// Height of numbers, in millimeters on paper; `None` for one that suits the page and the pen.
+    /// Height of numbers, in millimeters on paper; `None` to suit the page and the pen.
     pub text_height_mm: Option<f64>,
-    /// Width of the line of the pen that writes, in millimeters: small text needs a fine pen.
+    /// Line width of the pen that draws text, in millimeters: small text needs a fine pen.
     pub pen_width_mm: f64,
 }
 
@@ -43,7 +43,7 @@ impl From<Titles> for Axes {
 }
 
 impl Axes {
-    /// Axes of a style with the usual titles.
+    /// Axes of a style with the default titles.
     pub fn new(style: AxesStyle) -> Self {
         Self { style: Some(style), ..Self::default() }
     }
@@ -54,7 +54,7 @@ impl Axes {
         Self { titles, ..self }
     }
 
-    /// Which numbers the x, y and z axes have.
+    /// The numbers on the x, y and z axes.
     #[must_use]
     pub fn ticks(self, ticks: [TickRule; 3]) -> Self {
         Self { ticks, ..self }
@@ -76,10 +76,10 @@ pub enum AxesStyle {
     Frame,
 }
 
-/// How the box's edges in front of the surface are drawn.
+/// How edges of the box in front of the surface are drawn.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum BoxFront {
-    /// Dashed, 1 mm and 1 mm.
+    /// Dashes of 1 mm with gaps of 1 mm.
     #[default]
     Dashed,
     /// Solid.
@@ -102,7 +102,7 @@ impl BoxFront {
     }
 }
 
-/// The side of the drawing where the z axis is.
+/// The side of the drawing with the z axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ZAxis {
     /// Left of the surface.
@@ -135,7 +135,7 @@ pub struct Titles {
 }
 
 impl Titles {
-    /// The usual titles of the axes, and one above the drawing.
+    /// The default titles of the axes, and a title above the drawing.
     pub fn of_drawing(title: impl Into<String>) -> Self {
         Self { drawing: title.into(), ..Self::default() }
     }

@@ -1,4 +1,4 @@
-//! A line of text as letters: accents, raised and lowered letters, and look-alikes.
+//! A line of text as letters: accents, superscripts, subscripts, and look-alikes.
 //!
 //! ```text
 //!   ω in rad s⁻¹      −1 raised: characters of their own

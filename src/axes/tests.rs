@@ -35,7 +35,7 @@ fn layout(around: &AxesBox, camera: &Camera, axes: &Axes, economy: Economy) -> O
     layout_on((160.0, 3.5), around, camera, axes, economy)
 }
 
-/// The axes of a box whose image is so many millimeters wide, with numbers of some height.
+/// The axes of a box whose image is this many millimeters wide, with numbers of some height.
 fn layout_on(
     (width_mm, text_mm): (f64, f64),
     around: &AxesBox,

@@ -1,4 +1,4 @@
-//! Lines of text at a place, and whether they are clear of other things.
+//! Lines of text at a place, and whether they are clear of everything else.
 //!
 //! ```text
 //!    ┌─────────────┐           Text takes up the box around its strokes, turned with it. Two convex

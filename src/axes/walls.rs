@@ -82,7 +82,7 @@ pub(super) fn is_between_walls(bbox: &BoundingBox, edge: &BoxEdge) -> bool {
 }
 
 /// Whether an edge is behind the surface: it borders a wall, and both of its faces are seen from inside. If
-/// the eye is between two opposite faces, the nearer one is no wall, but borders others.
+/// the eye is between two opposite faces, the nearer one is not a wall, but borders others.
 pub(super) fn is_behind(bbox: &BoundingBox, edge: &BoxEdge) -> bool {
     bbox.place(edge) == EdgePlace::Back && is_beside_wall(bbox, edge)
 }

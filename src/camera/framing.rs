@@ -84,7 +84,7 @@ pub enum Standpoint {
 /// Perspective or orthographic projection, without parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProjectionKind {
-    /// Lines of sight meet in the eye.
+    /// Lines of sight meet at the eye.
     Perspective,
     /// Lines of sight are parallel.
     Orthographic,
@@ -138,7 +138,7 @@ impl Default for View {
 }
 
 impl From<&Camera> for View {
-    /// The view that gives this very camera, whatever the scene.
+    /// The view that gives exactly this camera, whatever the scene.
     fn from(camera: &Camera) -> Self {
         let (projection, fov_deg, near) = match camera.projection() {
             Projection::Perspective { fov_deg, near } => {
@@ -159,7 +159,7 @@ impl From<&Camera> for View {
     }
 }
 
-/// Why no camera can be chosen.
+/// Why a view is not a valid camera.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ViewError {
     /// The distance is not positive and finite.
@@ -173,7 +173,7 @@ pub enum ViewError {
         "coordinates of {0:e} are too large for any camera to show the whole scene; scale the model down"
     )]
     TooLarge(f64),
-    /// The parameters do not make a valid camera.
+    /// The parameters do not define a valid camera.
     #[error(transparent)]
     Camera(#[from] CameraError),
 }
@@ -241,7 +241,7 @@ impl View {
         Self { projection: Some(ProjectionKind::Orthographic), ..self }
     }
 
-    /// Sets the vertical field of view in degrees. A wider one moves an automatic eye closer.
+    /// Sets the vertical field of view in degrees. A wider field of view moves an automatic eye closer.
     #[must_use]
     pub fn fov_deg(self, fov_deg: f64) -> Self {
         Self { fov_deg, ..self }

@@ -1,4 +1,4 @@
-//! The camera: which way the scene is looked at, and the map from world to image.
+//! The camera: the direction of view, and the map from world to image.
 //!
 //! ```text
 //!            upward (image y)                 world: right-handed, z up
@@ -6,12 +6,12 @@
 //!              │   ╱ forward                  right   = forward × up
 //!              │  ╱                           upward  = right × forward
 //!              │ ╱
-//!         eye  ●──────► right (image x)       image: x to the right, y upwards
+//!         eye  ●──────► right (image x)       image: x to the right, y upward
 //! ```
 //!
 //! With `d = P − eye` and the three directions normalized as `r`, `u`, `f`, the image of `P` is
-//! `((d·r)/(d·f), (d·u)/(d·f))` in perspective and `(d·r, d·u)` in orthographic projection. The
-//! image is for drawing only: what hides what is decided on the points of the scene.
+//! `((d·r)/(d·f), (d·u)/(d·f))` in perspective and `(d·r, d·u)` in orthographic projection. The image is for
+//! drawing only: visibility is decided on the points of the scene.
 
 pub mod framing;
 
@@ -28,21 +28,21 @@ pub use self::image_point::ImagePoint;
 /// The projection: perspective or parallel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Projection {
-    /// All through the eye.
+    /// All lines of sight meet at the eye.
     Perspective {
-        /// Vertical angle that the page shows, in degrees; it has no part in what hides what.
+        /// Vertical field of view of the page, in degrees; it does not affect visibility.
         fov_deg: f64,
         /// A point is kept when `(P − eye)·forward ≥ near · forward·forward`.
         near: f64,
     },
-    /// All parallel to `forward`; there is no near plane.
+    /// All lines of sight are parallel to `forward`; there is no near plane.
     Orthographic,
 }
 
-/// The near plane's place, as a part of the way from eye to target, unless set otherwise.
+/// The default distance of the near plane, as a fraction of the distance from eye to target.
 pub const DEFAULT_NEAR: f64 = 1e-6;
 
-/// The vertical field of view, in degrees, unless set otherwise.
+/// The vertical field of view, in degrees, by default.
 pub const DEFAULT_FOV_DEG: f64 = 30.0;
 
 /// A point of view: finite, with `up` not parallel to the direction of view.
@@ -54,19 +54,19 @@ pub struct Camera {
     projection: Projection,
 }
 
-/// Why numbers make no camera.
+/// Why a camera is not valid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum CameraError {
     /// A number is infinite or not a number.
-    #[error("the camera's numbers must be finite")]
+    #[error("camera values must be finite")]
     NotFinite,
     /// Eye and target coincide.
     #[error("eye and target are the same point")]
     NoDirection,
-    /// The way from the eye to the target is too long for a number.
+    /// The distance from the eye to the target is too large for a number.
     #[error("eye and target are too far apart for double precision")]
     TooFarApart,
-    /// `up` has no part across the direction of view.
+    /// `up` is parallel to the direction of view.
     #[error("the up direction is parallel to the direction of view")]
     UpParallel,
     /// The field of view is not between 0 and 180 degrees.
@@ -117,7 +117,7 @@ impl Camera {
         Ok(camera)
     }
 
-    /// Where the observer stands.
+    /// The position of the eye.
     pub fn eye(&self) -> DVec3 {
         self.eye
     }
@@ -176,7 +176,7 @@ impl Camera {
         }
     }
 
-    /// Image coordinates of a world point, y upwards. Behind the eye they mean nothing.
+    /// Image coordinates of a world point, y upward. Behind the eye they mean nothing.
     pub fn image(&self, point: DVec3) -> DVec2 {
         let frame = self.frame();
         let d = point - self.eye;

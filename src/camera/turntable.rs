@@ -1,4 +1,4 @@
-//! Views around the vertical, as of a model on a turntable.
+//! Views around the vertical axis, as of a model on a turntable.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ impl Camera {
     /// clockwise seen from above. Exact for quarter turns.
     ///
     /// # Errors
-    /// The rotated numbers make no camera: they overflow, or up and forward round to one direction.
+    /// The rotated camera is not valid: its numbers overflow, or up and forward round to one direction.
     pub fn turned(&self, angle_deg: f64) -> Result<Self, CameraError> {
         let (sin, cos) = sin_cos_deg(angle_deg);
         let turn = |v: DVec3| DVec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z);
@@ -18,7 +18,7 @@ impl Camera {
         Self::new(eye, self.target, turn(self.up), self.projection)
     }
 
-    /// `n` cameras on the way once around the target, at equal angles, this one first.
+    /// `n` cameras at equal angles on one turn around the target, starting with this one.
     ///
     /// # Errors
     /// As for [`turned`](Self::turned).

@@ -16,7 +16,7 @@ use crate::strokes::{GridFamily, StrokeKind, Strokes, SurfacePart};
 use crate::surface::formula::Axis;
 use crate::surface::{CutGrid, Grid, Places};
 
-/// So many grid lines are chained at a time, in parallel: many small lists at once would leave much memory
+/// This many grid lines are chained at a time, in parallel: many small lists at once would leave much memory
 /// in use after them.
 const TOGETHER: usize = 128;
 

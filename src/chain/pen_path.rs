@@ -1,4 +1,4 @@
-//! In which order and direction the strokes of a family of grid lines are drawn.
+//! The order and direction in which the strokes of a family of grid lines are drawn.
 //!
 //! ```text
 //!   ──────►─┐   ┌─►────      Where lines are hidden in part, what is visible falls into fields.
@@ -28,7 +28,7 @@ const NEAR_LINES: u32 = 2;
 const NEAR_STROKES: usize = 8;
 
 /// Orders strokes, which are sorted by line and span: for each in turn its number, and whether it
-/// is drawn backwards. O(strokes log strokes).
+/// is drawn backward. O(strokes log strokes).
 pub(super) fn order(strokes: &[LineStroke]) -> Vec<(usize, bool)> {
     let mut is_drawn = vec![false; strokes.len()];
     let mut path: Vec<(usize, bool)> = Vec::with_capacity(strokes.len());

@@ -1,11 +1,11 @@
-//! Which kinds of line are drawn.
+//! Which kinds of lines are drawn.
 
 use crate::strokes::StrokeKind;
 
 /// The outline's place among the bits of the kinds.
 const OUTLINE: u32 = 1 << 31;
 
-/// Which kinds of line are drawn.
+/// Which kinds of lines are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LineSelection {
     kinds: u32,

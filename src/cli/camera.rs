@@ -1,4 +1,4 @@
-//! Where the camera stands, by options or by a file.
+//! The camera, from options or from a file.
 
 use std::error::Error;
 use std::io::{self, Read};
@@ -37,7 +37,7 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "DEG", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["eye", "view"])]
     elevation: Option<f64>,
-    /// Distance from target to eye [default: the whole scene in view]
+    /// Distance from target to eye [default: far enough to see the whole scene]
     #[arg(long, value_name = "D", value_parser = values::positive, conflicts_with = "eye")]
     distance: Option<f64>,
     /// Named view; orthographic unless --projection says otherwise
@@ -48,14 +48,14 @@ pub(super) struct CameraArgs {
     projection: Option<ProjectionKind>,
     /// Vertical field of view in degrees [default: 30]
     ///
-    /// It affects only the distance of an automatic camera, and what --fit-fov shows.
+    /// It only affects the automatic camera distance and --fit-fov.
     #[arg(long, value_name = "DEG", value_parser = values::field_of_view)]
     fov: Option<f64>,
     /// Distance of the near plane from the eye, as a fraction of the distance to the target [default:
     /// 0.000001]
     #[arg(long, value_name = "PART", value_parser = values::positive)]
     near: Option<f64>,
-    /// Use the camera of a file written by --format json
+    /// Use the camera from a file written by --format json
     #[arg(long, value_name = "FILE")]
     #[arg(conflicts_with_all = ["eye", "target", "up", "azimuth", "elevation", "distance", "view",
         "projection", "fov", "near"])]
@@ -128,7 +128,7 @@ impl ViewSource {
         }
     }
 
-    /// What was asked for, the camera of a file included.
+    /// What was requested, the camera of a file included.
     pub(super) fn framing(&self) -> Result<View, Box<dyn Error>> {
         match self {
             Self::File(path) => Ok(View::from(&read_camera(path)?)),
@@ -150,9 +150,9 @@ impl ViewSource {
 /// An error about the point of view, with the options that mend it.
 pub(super) fn with_remedy(error: &ViewError) -> String {
     let remedy = match error {
-        ViewError::Camera(CameraError::UpParallel) => "; give another --up",
+        ViewError::Camera(CameraError::UpParallel) => "; use another --up",
         ViewError::Camera(CameraError::NoDirection | CameraError::TooFarApart) => {
-            "; give another --eye or --target"
+            "; use another --eye or --target"
         }
         _ => "",
     };
@@ -171,7 +171,7 @@ fn read_camera(path: &Path) -> Result<Camera, Box<dyn Error>> {
     let read = json::read_camera(&String::from_utf8_lossy(&bytes));
     Ok(read.map_err(|error| match error {
         ReadCameraError::Json(_) => {
-            format!("{}; give one written by --format json", failed(&error))
+            format!("{}; use a file written by --format json", failed(&error))
         }
         ReadCameraError::Camera(_) => failed(&error),
     })?)

@@ -52,7 +52,7 @@ macro_rules! choices {
 
 choices! {
     BoxFront {
-        Dashed "Dashed, 1 mm and 1 mm"
+        Dashed "Dashes of 1 mm with gaps of 1 mm"
         Solid "Solid"
         None "Left out"
     }
@@ -62,9 +62,9 @@ choices! {
     }
     Coloring {
         Shaded "By the light"
-        Order "By the order of painting: blue first, then green, red last"
+        Order "By paint order: blue first, then green, red last"
         Depth "By distance: nearer is lighter"
-        Splits "Each piece that a face was split into has its own color"
+        Splits "A color for each fragment"
     }
     Crop {
         Page "At the edges of the page"
@@ -72,7 +72,7 @@ choices! {
         None "Nowhere"
     }
     Duplicates {
-        Error "None: different heights at one point are an error"
+        Error "None; different heights at one point are an error"
         First "The first one in the file"
         Mean "One point at their mean height"
         Max "The highest one"
@@ -85,11 +85,11 @@ choices! {
     }
     FaceEngine {
         Auto "Chosen by the size of the model"
-        DepthSort "Far to near, few splits; one view of faces that hardly cross"
-        Bsp "Far to near, by a tree of planes; large models, and many views of one"
-        Octree "Far to near, by a tree of boxes; large models of small faces"
-        Warnock "Windows of the image, divided until one face fills each; few, large faces"
-        WeilerAtherton "Exact regions side by side; cutters, engravers, inks; up to 10,000 faces"
+        DepthSort "Far to near, few splits; for one view of faces that hardly cross"
+        Bsp "Far to near, by a tree of planes; for large models, and many views of one"
+        Octree "Far to near, by a tree of boxes; for large models of small faces"
+        Warnock "Windows of the image, divided until one face fills each; for few, large faces"
+        WeilerAtherton "Exact regions side by side, for cutters, engravers, inks; up to 10,000 faces"
     }
     Format {
         Svg "Scalable Vector Graphics, for print and plotters"
@@ -131,19 +131,19 @@ choices! {
         Trimetric "Azimuth 30, elevation 25: each axis foreshortened differently"
     }
     ProjectionKind {
-        Perspective "Lines of sight meet in the eye"
+        Perspective "Lines of sight meet at the eye"
         Orthographic "Lines of sight are parallel"
     }
     Show {
         Shaded "Faces in the light"
-        Tone "How light each point is, as gray; the background is white"
+        Tone "The tone of each point as gray; the background is white"
         Depth "Nearer is lighter"
-        Faces "Each face has its own color"
+        Faces "A color for each face"
         Normals "Red is right, green is up, blue is toward the viewer"
     }
     Outside {
-        Cut "The surface is cut off"
-        Clamp "There are plateaus at the ends of the range"
+        Cut "Cut the surface off"
+        Clamp "Clamp heights to the range, which makes plateaus"
     }
     StrokeElement {
         Path "<path>, one for each stroke"
@@ -151,7 +151,7 @@ choices! {
     }
     Subdivision {
         Regular "Into quarters"
-        Vertices "At a vertex near the middle"
+        Vertices "At a vertex near the center"
     }
     SurfaceEngine {
         Auto "Max-min where it applies, otherwise roberts or appel"

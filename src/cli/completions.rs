@@ -1,6 +1,6 @@
 //! Completion scripts for shells.
 //!
-//! A script knows the machines and presets of the configuration files as they are when it is made.
+//! A script knows the machines and presets in the configuration files at the time it is generated.
 
 use std::error::Error;
 

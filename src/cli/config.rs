@@ -64,13 +64,13 @@ pub(super) enum ConfigError {
     Read { path: PathBuf, error: std::io::Error },
     #[error("{}: {error}", path.display())]
     Toml { path: PathBuf, error: toml::de::Error },
-    #[error("{origin}: {name} is true or false, not {value:?}")]
+    #[error("{origin}: {name} must be true or false, not {value:?}")]
     NoFlag { origin: String, name: String, value: String },
-    #[error("{origin}: {name} takes one value, or several if its option can be repeated")]
+    #[error("{origin}: {name} takes one value, or several if its option may be repeated")]
     NoValue { origin: String, name: String },
     #[error("{}:{line}: unknown setting `{name}`{suggestion}", path.display())]
     Unknown { path: PathBuf, line: usize, name: String, suggestion: String },
-    #[error("there is no preset called `{name}`{suggestion}")]
+    #[error("unknown preset `{name}`{suggestion}")]
     NoPreset { name: String, suggestion: String, command: String },
 }
 
@@ -238,7 +238,7 @@ fn layers(
         let Some((path, settings)) = found else {
             let known: Vec<&str> = preset_names(&files);
             let suggestion = match known.as_slice() {
-                [] => "; no configuration file has any".to_owned(),
+                [] => "; no configuration file defines any".to_owned(),
                 known => suggestion(&name, known.iter().copied()),
             };
             return Err(ConfigError::NoPreset { name, suggestion, command: command.to_owned() });
@@ -257,7 +257,7 @@ fn layers(
 /// Machines of the configuration files.
 #[derive(Default)]
 pub(super) struct OwnMachines {
-    /// The one asked for, and the name of its origin.
+    /// The one requested, and the name of its origin.
     pub(super) found: Option<(Table, String)>,
     /// The names of all.
     pub(super) names: Vec<String>,

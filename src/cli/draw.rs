@@ -1,4 +1,4 @@
-//! `hiddenline draw`: from model files to a drawing's file.
+//! `hiddenline draw`: from model files to a drawing in a file.
 
 mod lines;
 #[cfg(feature = "view")]
@@ -48,21 +48,21 @@ Examples:
   hiddenline draw part.stl --view isometric --hidden dashed --page a3 -o part.svg
       An isometric drawing with hidden lines dashed, on their own layer.
   hiddenline draw house.obj --up-axis y --eye=-30,-40,12 --fov 50 -o house.png
-      A picture seen from a given point. Numbers may be negative.
+      A PNG, seen from a given point. Numbers may be negative.
   hiddenline draw gear.stl --view top --drawing-scale 1:2 -o gear.svg
       True to scale, for a model in millimeters.
   hiddenline draw spot.obj --up-axis y --hatch --ground --light 1,-1,2 -o spot.svg
-      Hatched by the light, with its shadow on the ground.
+      Hatched, with its shadow on the ground.
   hiddenline draw box.stl lid.stl --move 0,0,0 --move 0,0,40 -o open.svg
       Two models, the second one lifted.
   cat part.stl | hiddenline draw - --input-format stl > part.svg
       From standard input to standard output.
   hiddenline draw cow.obj --turntable 36 -o 'frames/{stem}-{index:03}.svg'
-      Frames of a film, all at one scale.
+      Frames of an animation, all at the same scale.
   hiddenline draw --each parts/*.stl -o 'out/{stem}.svg'
       A drawing of each model.";
 
-/// Draw models as lines, the hidden ones removed
+/// Draw models as lines, with hidden lines removed
 ///
 /// Reads OBJ, STL (text or binary), PLY, OFF, glTF (.gltf, .glb) and 3MF, and writes SVG for print
 /// and pen plotters, PNG, or the strokes as JSON. Several models are drawn together as one scene. The
@@ -243,7 +243,10 @@ fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
                 mm(drafted.dropped_mm)
             ),
         ),
-        (drafted.overlap_mm >= 0.5, format!("{} on other ink left out", mm(drafted.overlap_mm))),
+        (
+            drafted.overlap_mm >= 0.5,
+            format!("{} of overlapping ink left out", mm(drafted.overlap_mm)),
+        ),
         (drafted.thinned_mm >= 0.5, format!("{} thinned out", mm(drafted.thinned_mm))),
     ];
     let done: Vec<String> =
@@ -254,8 +257,8 @@ fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
     }
     if !is_thinned && drafted.crowded_share > CROWDED_SHARE {
         notes.hints.push(format!(
-            "{:.0} % of the ink has other ink beside it within a pen's width; --thin leaves room \
-             between lines",
+            "{:.0} % of the ink is within a pen width of other ink; --thin leaves room between \
+             lines",
             100.0 * drafted.crowded_share,
         ));
     }
@@ -271,15 +274,15 @@ fn why_empty(job: &Job, scene: &Scene, sheet: &PlacedPage, n_lines: usize) -> St
         let length = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
         let longest = with_all.iter().map(|stroke| length(stroke.points)).fold(0.0, f64::max);
         return format!(
-            "every stroke is shorter than --shortest-stroke {} mm, the longest {:.2e} mm; give a \
-             larger --drawing-scale, the model's unit by --unit, such as m, or a smaller \
+            "every stroke is shorter than --shortest-stroke {} mm, the longest {:.2e} mm; use a \
+             larger --drawing-scale, the model's unit, as in --unit m, or a smaller \
              --shortest-stroke",
             job.draw.shortest_stroke_mm,
             longest * mm_per_unit
         );
     }
     if n_lines == 0 && sheet.extent.corners().is_some() {
-        return "the model has no lines of the kinds selected; give other --lines".to_owned();
+        return "the model has no lines of the kinds selected; use other --lines".to_owned();
     }
     "nothing is in view".to_owned()
 }

@@ -1,4 +1,4 @@
-//! Where results go: a file that appears whole or not at all, or standard output.
+//! Where results go: a file that appears completely or not at all, or standard output.
 
 use std::fs;
 use std::io::{self, BufWriter, Write};
@@ -55,14 +55,14 @@ fn create_beside(target: &Path, existing: Option<&fs::Metadata>) -> io::Result<N
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // What any program asks for that creates a file; the umask is taken off by the system.
+        // What any program requests that creates a file; the umask is taken off by the system.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     // The error would name the temporary file, which nobody knows.
     let file = builder.tempfile_in(&folder).map_err(|error| match missing_folder(target) {
         Some(folder) => io::Error::new(
             io::ErrorKind::NotFound,
-            format!("there is no folder {}", folder.display()),
+            format!("folder {} does not exist", folder.display()),
         ),
         None => error.kind().into(),
     })?;

@@ -61,7 +61,7 @@ Examples:
 
 // Only these formats have filled areas.
 const OUTPUT_HELP: &str = "\
-File to write, its format given by the extension; `-` is standard output
+File to write, in the format given by its extension; `-` is standard output
 
 .svg; .pdf; .png";
 const FORMAT_HELP: &str =
@@ -107,11 +107,11 @@ struct EdgeArgs {
     /// Draw areas only
     #[arg(long, overrides_with = "edges")]
     no_edges: bool,
-    /// Kinds of line on top, as for `draw`
+    /// Kinds of lines to draw on top, as for `draw`
     #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     lines: LineSelection,
-    /// Faces that meet at more than this angle make a crease
+    /// Faces that meet at more than this angle form a crease
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_CREASE_DEG)]
     crease: f64,
@@ -150,12 +150,13 @@ impl FillArgs {
         output.warnings.extend(idle);
         if !output.format.has_fills() {
             let error = NoFills(output.format);
-            return Err(
-                format!("{error}; give another --format, or `hiddenline draw` the lines").into()
-            );
+            return Err(format!(
+                "{error}; use another --format, or draw lines with `hiddenline draw`"
+            )
+            .into());
         }
         if areas.turntable.is_some() && output.path.is_none() {
-            return Err("--turntable makes several files; give -o FILE".into());
+            return Err("--turntable makes several files; use -o FILE".into());
         }
         let view = camera.view_source();
         let inputs = input.inputs().chain(view.input()).chain(output.inputs.clone());
@@ -181,7 +182,7 @@ impl FillArgs {
         if areas.white && !paints_over(fill.engine) {
             let name = fill.engine.name();
             return Err(format!(
-                "{name} does not paint faces over each other; with --white take --engine bsp, \
+                "{name} does not paint faces over each other; with --white use --engine bsp, \
                  depth-sort or octree"
             )
             .into());
@@ -372,7 +373,7 @@ fn left_out(n: usize) -> Option<String> {
     (n > 0).then(|| {
         format!(
             "{lines} no painted face (where faces cross, wires, faces seen edge-on) and left out; \
-             `hiddenline draw` has them"
+             `hiddenline draw` draws them"
         )
     })
 }
@@ -381,7 +382,7 @@ fn left_out(n: usize) -> Option<String> {
 fn with_remedy(error: &FillError, job: &Job) -> String {
     let FillError::Engine(cause) = error else { return error.to_string() };
     if matches!(cause, FaceError::TooManyLeaves { .. }) {
-        return format!("{error}; give a larger --leaf");
+        return format!("{error}; use a larger --leaf");
     }
     let is_possible = |engine: &&FaceEngine| {
         **engine != job.fill.engine && (!job.paints_over || paints_over(**engine))
@@ -389,8 +390,8 @@ fn with_remedy(error: &FillError, job: &Job) -> String {
     let names: Vec<&str> =
         cause.instead().iter().filter(is_possible).map(|engine| engine.name()).collect();
     match names[..] {
-        [] => format!("{error}; take a simpler model, or the lines of `hiddenline draw`"),
-        _ => format!("{error}; take --engine {}", names.join(" or ")),
+        [] => format!("{error}; use a simpler model, or draw lines with `hiddenline draw`"),
+        _ => format!("{error}; use --engine {}", names.join(" or ")),
     }
 }
 

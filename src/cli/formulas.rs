@@ -1,4 +1,4 @@
-//! Messages about formulas, with the place that they are about.
+//! Messages about formulas, with the place of the error.
 
 use hiddenline::stages::surface::formula::FormulaError;
 

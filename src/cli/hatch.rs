@@ -1,4 +1,4 @@
-//! Hatching: the options, and from them what is hatched.
+//! Hatching: from command-line options to hatch options.
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -13,59 +13,59 @@ use super::{config, values};
 #[derive(Args)]
 #[command(next_help_heading = "Hatching")]
 pub(super) struct HatchArgs {
-    /// Hatch faces by the light: sections of the model (default), or straight lines on paper
+    /// Shade faces with hatch lines: sections of the model (default), or straight lines on paper
     #[arg(long, value_name = "METHOD", value_enum, num_args = 0..=1)]
     #[arg(default_missing_value = "sections")]
     hatch: Option<Method>,
-    /// Angles of the lines in degrees, a family for each; sections have them on faces toward the viewer
+    /// Line angles in degrees, one family for each; sections have them on faces toward the viewer
     ///
-    /// The default is 45 for straight lines. Sections lean with the light unless there are angles.
+    /// The default is 45 for straight lines. Sections lean with the light unless angles are given.
     #[arg(long, value_name = "DEG,…", value_delimiter = ',', value_parser = values::number)]
     #[arg(allow_negative_numbers = true)]
     hatch_angles: Vec<f64>,
-    /// Cross the lines by a second family where it is dark
+    /// Add a second, crossing family of lines in dark places
     #[arg(long, conflicts_with = "hatch_angles")]
     hatch_cross: bool,
-    /// Normal of the planes that cut the sections
+    /// Normal of the section planes
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     #[arg(conflicts_with = "hatch_angles")]
     hatch_normal: Option<DVec3>,
     /// How lines thin out: halving, a number of levels from 2 to 6, or continuous
     ///
-    ///   halving     every second line ends where half of the ink will do
-    ///   2 to 6      the same, with so many levels of darkness; for flat faces
-    ///   continuous  one line ends after the other
+    ///   halving     every second line ends where half the ink is enough
+    ///   2 to 6      the same, with this many levels of darkness; for flat faces
+    ///   continuous  lines end one after another
     #[arg(long, value_name = "LEVELS", value_parser = levels, default_value = "halving")]
     #[arg(verbatim_doc_comment)]
     hatch_levels: HatchLevels,
     /// Shadows to hatch [default: cast]
     #[arg(long, value_enum)]
     hatch_shadows: Option<Shadows>,
-    /// A plane below the model that takes its shadows, at Z or at its lowest point
+    /// Add a ground plane that catches shadows, at Z or at the model's lowest point
     #[arg(long, value_name = "Z", num_args = 0..=1, allow_negative_numbers = true)]
     #[arg(default_missing_value = "lowest", value_parser = ground)]
     ground: Option<Ground>,
-    /// White margin of the hatching beside nearer outlines
+    /// White margin between hatching and nearer outlines
     #[arg(long, value_name = "MM", value_parser = values::length)]
     #[arg(default_value_t = DEFAULT_HATCH_GAP_MM)]
     hatch_gap: f64,
-    /// Tones at least this light stay white, from 0 to 1
+    /// Leave tones white that are at least this light, from 0 to 1
     #[arg(long, value_name = "PART", value_parser = positive_part, default_value_t = DEFAULT_WHITE)]
     hatch_white: f64,
-    /// How much of the paper the ink covers in the darkest places, from 0 to 1
+    /// Share of the paper that ink covers in the darkest places, from 0 to 1
     #[arg(long, value_name = "PART", value_parser = positive_part, default_value_t = DEFAULT_BLACK)]
     hatch_black: f64,
-    /// Tone of what no light reaches, from 0 to 1
+    /// Tone where no light reaches, from 0 to 1
     #[arg(long, value_name = "PART", value_parser = values::part, default_value_t = AMBIENT)]
     hatch_ambient: f64,
-    /// Shortest hatch stroke [default: 1, or three widths of the pen]
+    /// Shortest hatch stroke [default: 1, or three pen widths if that is more]
     #[arg(long, value_name = "MM", value_parser = values::length)]
     hatch_shortest: Option<f64>,
     /// Shade faces that meet at this angle or less as one curved surface; 0 for flat faces
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_SMOOTH_DEG)]
     hatch_smooth: f64,
-    /// Angle and darkness of one material: NAME=ANGLE:BLACK; can be given several times
+    /// Angle and darkness of one material: NAME=ANGLE:BLACK; may be repeated
     #[arg(long = "hatch-material", value_name = "MATERIAL", value_parser = material)]
     hatch_materials: Vec<HatchMaterial>,
 }
@@ -74,10 +74,10 @@ pub(super) struct HatchArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Hatching")]
 pub(super) struct LightArgs {
-    /// Where the light comes from, as a direction [default: over the viewer's left shoulder]
+    /// Direction toward the light [default: over the viewer's left shoulder]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
-    /// Where the light is, as a point
+    /// Position of the light: a point outside the model
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     #[arg(conflicts_with = "light")]
     light_at: Option<DVec3>,
@@ -85,7 +85,7 @@ pub(super) struct LightArgs {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Method {
-    /// Parallel planes that cut the model: lines wrap its form
+    /// Sections by parallel planes: lines wrap around the form
     Sections,
     /// Parallel lines on paper
     Straight,
@@ -93,13 +93,13 @@ enum Method {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Shadows {
-    /// What faces away from the light, and what other faces shade
+    /// Faces turned away from the light, and shadows cast by other faces
     Cast,
-    /// Only what faces away from the light
+    /// Only faces turned away from the light
     Own,
-    /// No shadows: tone falls off evenly to all sides
+    /// No shadows: tone falls off evenly on all sides
     None,
-    /// Nothing but shadows
+    /// Only shadows
     Only,
 }
 
@@ -192,13 +192,13 @@ impl HatchArgs {
 pub(super) fn with_remedy(error: &HatchError) -> String {
     match error {
         HatchError::Light(LightError::Inside(..)) => {
-            format!("{error}; give --light-at a point outside, or --light a direction")
+            format!("{error}; use --light-at with a point outside, or --light with a direction")
         }
         HatchError::Horizon => {
-            format!("{error}; give a --light with a positive z, or leave --ground out")
+            format!("{error}; use a --light with a positive z, or leave out --ground")
         }
         HatchError::TooMany(_) => {
-            format!("{error}: give a smaller --drawing-scale or a larger --pen-width")
+            format!("{error}: use a smaller --drawing-scale or a larger --pen-width")
         }
         _ => error.to_string(),
     }
@@ -215,7 +215,7 @@ fn levels(text: &str) -> Result<HatchLevels, String> {
         number => {
             let number = number.parse().ok().filter(|n| LEVELS.contains(n));
             number.map(HatchLevels::Steps).ok_or_else(|| {
-                "give halving, continuous, or a number of levels from 2 to 6".to_owned()
+                "expected halving, continuous, or a number of levels from 2 to 6".to_owned()
             })
         }
     }
@@ -227,7 +227,7 @@ fn ground(text: &str) -> Result<Ground, String> {
 
 /// A material as `brick=30:0.4`; angle or darkness may be left out.
 fn material(text: &str) -> Result<HatchMaterial, String> {
-    let example = || "give a material as in brick=30:0.4".to_owned();
+    let example = || "expected a material such as brick=30:0.4".to_owned();
     let (name, how) = text.rsplit_once('=').ok_or_else(example)?;
     let (angle, black) = how.split_once(':').unwrap_or((how, ""));
     let given = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());

@@ -1,7 +1,7 @@
-//! Warnings about options that were typed but change nothing.
+//! Warnings about options on the command line that have no effect.
 //!
-//! Only what was typed counts: a setting from a file, a preset or the environment is meant for many
-//! drawings, and need not matter to each of them.
+//! Only options on the command line count: a setting from a file, a preset or the environment is meant for
+//! many drawings, and need not apply to each of them.
 
 use clap::ArgMatches;
 
@@ -79,7 +79,7 @@ const RULES: &[Rule] = &[
         option: "smoothness",
         commands: &["surface"],
         is_idle: |c| c.is_given("grid") || c.is_given("points"),
-        reason: "on samples from a file; it is for formulas",
+        reason: "on samples from a file; it applies to formulas",
     },
     Rule { option: "labels", commands: &["surface"], is_idle: is_exact, reason: EXACT },
     Rule { option: "label-side", commands: &["surface"], is_idle: is_exact, reason: EXACT },
@@ -175,7 +175,7 @@ const RULES: &[Rule] = &[
         option: "center",
         commands: &["optimize"],
         is_idle: |c| c.is_set("fit"),
-        reason: "with --fit, which centers the drawing, too",
+        reason: "with --fit, which also centers the drawing",
     },
 ];
 
@@ -241,7 +241,7 @@ fn has_no_axes(choices: &Choices) -> bool {
     is_exact(choices) || choices.is_set("no-axes") || choices.has("axes", &["none"])
 }
 
-/// Level curves have no labels unless these are asked for, but in views from above without grid lines.
+/// Level curves have no labels unless these are requested, but in views from above without grid lines.
 fn has_no_labels(choices: &Choices) -> bool {
     let has_grid_lines = choices.has("lines", &["x", "y", "both"]);
     choices.has("labels", &["none"]) || !choices.is_present("labels") && has_grid_lines

@@ -1,4 +1,4 @@
-//! What is shown: models, or a surface in their place.
+//! The input: models, or a surface instead.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -25,8 +25,8 @@ pub(super) struct InputArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 struct FormulaArgs {
-    /// Show the surface z = EXPR, a formula of x, y, r and theta, instead of models; give it once for
-    /// each sheet
+    /// Show the surface z = EXPR, a formula in x, y, r and theta, instead of models; repeat it for more
+    /// sheets
     #[arg(long = "expr", value_name = "EXPR", allow_hyphen_values = true)]
     expression: Vec<String>,
     #[command(flatten)]
@@ -49,7 +49,7 @@ impl InputArgs {
         let files = self.model.files()?;
         if files.models.is_empty() {
             return Err(
-                "give models, or a surface by --expr, --grid, --points or --parametric".into()
+                "specify models, or a surface with --expr, --grid, --points or --parametric".into(),
             );
         }
         Ok(Input::Files(files))

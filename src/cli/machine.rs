@@ -24,7 +24,7 @@ pub(super) struct Machine {
 /// Why a machine cannot be used.
 #[derive(Debug, Error)]
 pub(super) enum MachineError {
-    #[error("there is no machine called `{name}`{suggestion}")]
+    #[error("unknown machine `{name}`{suggestion}")]
     Unknown { name: String, suggestion: String },
     #[error("`{name}` is not a machine for {format}{suggestion}")]
     OtherFormat { name: String, format: &'static str, suggestion: String },
@@ -155,8 +155,8 @@ pub(super) fn unkept_controls(plot: &Plot, machine: &Plotter) -> Vec<String> {
         Some(_) => None,
         None => numbers(Layer::pauses).map(|layers| {
             format!(
-                "{title} cannot pause before layer {layers}, as `!` asks; give each pen a place in \
-                 the machine, or write the layers to separate files"
+                "{title} cannot pause before layer {layers}, as `!` requests; give each pen its \
+                 own place in the machine, or write the layers to separate files"
             )
         }),
     };
@@ -205,7 +205,7 @@ fn own_machine(
             let plotters = plotters.iter().map(|plotter| plotter.name.as_str());
             let known = names.iter().map(String::as_str).chain(plotters);
             let suggestion = suggestion(like, known);
-            return Err(failed(format!("there is no machine called `{like}`{suggestion}").into()));
+            return Err(failed(format!("unknown machine `{like}`{suggestion}").into()));
         };
         known.extend(table);
         table = known;

@@ -73,15 +73,15 @@ enum Color {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Draw models as lines, the hidden ones removed
+    /// Draw models as lines, with hidden lines removed
     Draw(Box<DrawArgs>),
-    /// Draw a surface z = f(x, y) by its grid lines, the hidden parts removed
+    /// Draw a surface z = f(x, y) as grid lines or level curves, with hidden lines removed
     Surface(Box<SurfaceArgs>),
     /// Fill the visible faces of models with color, for print
     Fill(Box<FillArgs>),
-    /// Make a shaded picture of models
+    /// Render a shaded picture of models
     Preview(Box<PreviewArgs>),
-    /// Turn a model in the browser, with its hidden lines removed as you turn it
+    /// Turn a model in the browser, with hidden lines removed as you drag
     #[cfg(feature = "view")]
     View(ViewArgs),
     /// Join and order the strokes of any line SVG for a plotter
@@ -91,14 +91,14 @@ enum Command {
         #[command(subcommand)]
         command: ConfigCommand,
     },
-    /// Print a script that completes commands in a shell
+    /// Print a shell completion script
     Completions {
         /// The shell
         shell: Shell,
     },
     /// Print the manual page in troff format
     Man {
-        /// Print the page of this command instead
+        /// Print the manual page of this command instead
         command: Option<String>,
     },
 }
@@ -208,7 +208,7 @@ fn man(name: Option<&str>) -> Result<(), Box<dyn Error>> {
         Some(name) => command
             .find_subcommand(name)
             .cloned()
-            .ok_or_else(|| format!("there is no command `{name}`; see hiddenline --help"))?,
+            .ok_or_else(|| format!("unknown command `{name}`; see hiddenline --help"))?,
     };
     let mut page = Vec::new();
     clap_mangen::Man::new(chosen).render(&mut page)?;

@@ -26,21 +26,21 @@ pub(super) struct ModelArgs {
     /// Files to draw: .obj, .stl, .ply, .off, .gltf, .glb, .3mf; `-` is standard input
     #[arg(value_name = "MODEL", required = true)]
     models: Vec<PathBuf>,
-    /// Format of the models, regardless of their names
+    /// Format of the models, whatever their file names
     ///
-    /// Without it, the extension of each name decides, or else the content.
+    /// By default the format follows from the file extension, or else from the content.
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<ModelFormat>())]
     input_format: Option<ModelFormat>,
-    /// Axis that points up in the models [default: z, but y in glTF]
+    /// Axis that points up in the models [default: z; y for glTF]
     #[arg(long, value_name = "AXIS", value_parser = one_of::<UpAxis>(), allow_hyphen_values = true)]
     up_axis: Option<UpAxis>,
-    /// Factor for all coordinates; once for all models, or once for each, in order
+    /// Scale all coordinates by this factor; give it once for all models, or once per model in order
     #[arg(long, value_name = "FACTOR", value_parser = values::positive)]
     scale: Vec<f64>,
-    /// Rotate by angles in degrees around x, then y, then z; once for all models, or once for each
+    /// Rotate around x, then y, then z, in degrees; give it once for all models, or once per model
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     rotate: Vec<DVec3>,
-    /// Move by this vector, after scaling and rotating; once for all models, or once for each
+    /// Move by this vector, after scaling and rotating; give it once for all models, or once per model
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = values::vector)]
     #[arg(allow_hyphen_values = true)]
     move_by: Vec<DVec3>,
@@ -166,7 +166,7 @@ impl ModelFiles {
         let (mesh, arranged) = self.arrangement.arrange(models)?;
         repairs += arranged;
         if mesh.n_faces() == 0 && mesh.wires().is_empty() {
-            return Err("no face is left; give a smaller --weld".into());
+            return Err("no face is left; use a smaller --weld".into());
         }
         if self.arrangement.weld_distance == 0.0 && self.arrangement.merge_equal_faces {
             notes.hints.extend(weld_hint(&mesh));
@@ -189,7 +189,7 @@ impl ModelFiles {
     fn up_axis_hint(&self, model: &Model, name: &str) -> Option<String> {
         let is_open = self.up_axis.is_none() && model.format == ModelFormat::Obj;
         (is_open && seems_y_up(&model.mesh))
-            .then(|| format!("{name} seems to be made with y up; if so, give --up-axis y"))
+            .then(|| format!("{name} seems to be modeled with y up; if so, use --up-axis y"))
     }
 
     /// The factor from a model's unit to that of the scene, the unit of the first model that has one.
@@ -201,8 +201,8 @@ impl ModelFiles {
         }
         let factor = unit_mm / scene_mm;
         notes.hints.push(format!(
-            "{name} is in units of {unit_mm} mm and was scaled by {factor}, to units of {scene_mm} mm; \
-             --unit keeps all models as they are"
+            "{name} is in units of {unit_mm} mm and was scaled by {factor}, to units of \
+             {scene_mm} mm; --unit keeps all models as they are"
         ));
         factor
     }
@@ -231,7 +231,7 @@ fn for_each_model<T: Copy>(
         [one] => Ok(vec![one; n_models]),
         _ if given.len() == n_models => Ok(given.to_vec()),
         _ => Err(format!(
-            "{name} is given {} times for {n_models} models; give it once for all, or once for each",
+            "{name} is given {} times for {n_models} models; use it once for all, or once for each",
             given.len()
         )),
     }
@@ -242,7 +242,7 @@ fn with_remedy(error: ReadError) -> Box<dyn Error> {
     match error.fault {
         Fault::UnknownFormat => {
             let formats = "obj, stl, ply, off, gltf or 3mf";
-            format!("{error}; if it is a model, give --input-format {formats}").into()
+            format!("{error}; if it is a model, use --input-format {formats}").into()
         }
         _ => error.into(),
     }
@@ -252,7 +252,7 @@ fn with_remedy(error: ReadError) -> Box<dyn Error> {
 fn weld_hint(mesh: &Mesh) -> Option<String> {
     let seams = open_seams(mesh)?;
     Some(format!(
-        "{} of {} edges belong to only one face, as if their vertices were nearly equal; \
+        "{} of {} edges belong to only one face, perhaps because vertices are only nearly equal; \
          --weld {} merges them",
         seams.n_open, seams.n_edges, seams.distance
     ))
@@ -266,8 +266,8 @@ fn described(repairs: Repairs) -> String {
         (repairs.repeated_corners, "repeated corner left out", "repeated corners left out"),
         (
             repairs.dropped_wires,
-            "wire without length or given twice left out",
-            "wires without length or given twice left out",
+            "repeated or zero-length wire left out",
+            "repeated or zero-length wires left out",
         ),
         (repairs.equal_faces, "equal face merged", "equal faces merged"),
     ]

@@ -39,7 +39,7 @@ impl Part {
 impl NameTemplate {
     /// The template that a path stands for.
     pub(super) fn new(path: &Path) -> Self {
-        // A path that is no text has no places to fill, or loses nothing that can be typed.
+        // A path that is not text has no places to fill, or loses nothing that can be typed.
         let path = path.to_string_lossy();
         let (mut parts, mut text, mut rest) = (Vec::new(), String::new(), &*path);
         while let Some(open) = rest.find('{') {

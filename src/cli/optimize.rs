@@ -47,7 +47,7 @@ pub(super) struct OptimizeArgs {
     /// Drop strokes shorter than this, and close strokes whose ends are closer than this
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0")]
     shortest_stroke: f64,
-    /// Let opaque fills hide the ink below them; a shape with a fill but no stroke only hides
+    /// Let opaque fills hide the ink below them; a filled shape without a stroke only hides
     #[arg(long)]
     occlude: bool,
     #[command(flatten)]
@@ -67,7 +67,7 @@ struct PlacingArgs {
     /// Center the drawing on the sheet
     #[arg(long)]
     center: bool,
-    /// Where ink is cropped; --margin counts for this and for --fit
+    /// Where to crop ink; --margin applies to this and to --fit
     #[arg(long, value_name = "WHERE", value_parser = one_of::<Crop>())]
     #[arg(default_value = Crop::Page.name())]
     crop: Crop,
@@ -105,9 +105,11 @@ impl OptimizeArgs {
         }
         let pens = output.plotting.pens(hiddenline::stages::page::DEFAULT_PEN_WIDTH_MM);
         if pens.iter().any(|rule| rule.drawn != PenRole::Visible) {
-            return Err("an SVG has its pens already; --pen can only be given for `visible`, \
-                        which puts all lines on one"
-                .into());
+            return Err(
+                "an SVG already has its pens; --pen only accepts `visible`, which puts all \
+             lines on one pen"
+                    .into(),
+            );
         }
         check_place(output.path.as_deref(), &output.inputs)?;
         // An SVG may be replaced by its own optimized version: it is read completely before that.
@@ -132,7 +134,7 @@ impl OptimizeArgs {
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
     if is_dash(&job.file) && io::stdin().is_terminal() {
-        return Err("standard input is the terminal; give a file, or send an SVG to it".into());
+        return Err("standard input is the terminal; name a file, or pipe an SVG into it".into());
     }
     run.progress.stage("reading");
     let name = title(&job.file);
@@ -184,7 +186,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     {
         machine.assign_pens(&mut plot).map_err(|error| {
             format!(
-                "{name}: {error}; give --pen visible=1 to draw everything with one pen, or hide \
+                "{name}: {error}; use --pen visible=1 to draw everything with one pen, or hide \
                  layers by labels that begin with %"
             )
         })?;

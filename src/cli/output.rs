@@ -1,4 +1,4 @@
-//! The output: file, format, and what is reported.
+//! The output: file, format, and messages.
 
 mod place;
 
@@ -23,7 +23,7 @@ use super::{Refused, config, values};
 #[derive(Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct OutputArgs {
-    /// File to write, its format given by the extension; `-` is standard output
+    /// File to write, in the format given by its extension; `-` is standard output
     ///
     /// .svg; .hpgl, .plt; .gcode, .nc, .ngc; .pdf; .dxf; .png; .json
     #[arg(short, long, value_name = "FILE")]
@@ -35,13 +35,13 @@ pub(super) struct OutputArgs {
     #[arg(long, value_name = "ELEMENT", value_parser = one_of::<StrokeElement>())]
     #[arg(default_value = StrokeElement::default().name())]
     svg_element: StrokeElement,
-    /// Pixels per inch of a PNG [default: 150]
+    /// Resolution of a PNG in pixels per inch [default: 150]
     #[arg(long, value_parser = values::positive, conflicts_with = "png_width")]
     dpi: Option<f64>,
-    /// Pixels from left to right of a PNG
+    /// Width of a PNG in pixels
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..))]
     png_width: Option<u32>,
-    /// Show the pens' movements in a PNG: travel, order, or both separated by a comma
+    /// Show pen movement in a PNG: travel, order, or both, separated by a comma
     ///
     /// travel: pen-up travel as thin red lines; order: strokes from blue (first) through green to red
     /// (last).
@@ -55,7 +55,7 @@ pub(super) struct OutputArgs {
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Print counts and times as JSON, the last line on standard error
+    /// Print counts and times as JSON, on the last line of standard error
     #[arg(long)]
     stats: bool,
     /// Print nothing but errors
@@ -64,10 +64,10 @@ pub(super) struct OutputArgs {
     /// Print more detail
     #[arg(short, long)]
     verbose: bool,
-    /// Treat warnings as errors: exit with 1 and write nothing
+    /// Treat warnings as errors: exit with status 1 and write nothing
     #[arg(long)]
     strict: bool,
-    /// Use the preset called NAME from the configuration files
+    /// Use the preset NAME from the configuration files
     #[arg(long, value_name = "NAME")]
     preset: Option<String>,
     #[command(flatten)]
@@ -219,7 +219,7 @@ fn output_format(typed: Option<Format>, path: Option<&Path>) -> Result<Format, S
             let known = Format::ALL.iter().flat_map(|format| format.extensions());
             let known: Vec<String> = known.map(|extension| format!(".{extension}")).collect();
             let known = known.join(", ");
-            format!("`{}` has none of the extensions {known}; give --format", path.display())
+            format!("`{}` has none of the extensions {known}; use --format", path.display())
         }),
     }
 }

@@ -1,4 +1,4 @@
-//! The page: its size, and how large the drawing is on it.
+//! The page: its size, and the size of the drawing on it.
 
 use clap::Args;
 use hiddenline::stages::page::{
@@ -14,19 +14,19 @@ use super::values;
 #[derive(Args)]
 #[command(next_help_heading = "Page")]
 pub(super) struct PaperArgs {
-    /// a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm
-    /// [default: a4, for `optimize` the page of the file]
+    /// Paper size: a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm [default: a4; for `optimize`, that
+    /// of the file]
     ///
     /// A named size is turned to suit the drawing. Numbers may have a unit, as in 8x10in.
     #[arg(long, value_name = "SIZE")]
     page: Option<Paper>,
-    /// Turn the sheet so that it is wider than tall
+    /// Turn the sheet to be wider than tall
     #[arg(long, conflicts_with = "portrait")]
     landscape: bool,
-    /// Turn the sheet so that it is taller than wide
+    /// Turn the sheet to be taller than wide
     #[arg(long)]
     portrait: bool,
-    /// Empty border on all sides [default: 10, for `optimize` 0]
+    /// Blank margin on all sides [default: 10; for `optimize`, 0]
     #[arg(long, value_name = "MM", value_parser = values::length)]
     margin: Option<f64>,
 }
@@ -57,24 +57,25 @@ impl PaperArgs {
 pub(super) struct PageArgs {
     #[command(flatten)]
     paper: PaperArgs,
-    /// Scale, as in 1:10, instead of fitting the drawing to the page
+    /// Draw at this scale, as in 1:10, instead of fitting the page
     ///
-    /// In perspective it holds at the distance of the target. Coordinates in DXF are then model units.
+    /// In perspective the scale applies at the distance of the target. DXF coordinates are then in model
+    /// units.
     #[arg(long, value_name = "1:N", value_parser = values::scale, conflicts_with = "fit_fov")]
     drawing_scale: Option<f64>,
     /// Unit of the model, for --drawing-scale [default: as in the file, otherwise mm]
     #[arg(long, value_parser = one_of::<DxfUnit>())]
     unit: Option<DxfUnit>,
-    /// Fit the field of view, not the scene, between the upper and the lower margin
+    /// Fit the field of view, not the scene, between the top and bottom margins
     #[arg(long)]
     fit_fov: bool,
-    /// Show this height, in model units at the target, between the upper and the lower margin
+    /// Height to show between the top and bottom margins, in model units at the target
     ///
-    /// The target is in the middle of the page. What lies outside the margins is cut off.
+    /// The target is at the center of the page. Anything outside the margins is cropped.
     #[arg(long, value_name = "HEIGHT", value_parser = values::positive)]
     #[arg(conflicts_with_all = ["drawing_scale", "fit_fov"])]
     view_height: Option<f64>,
-    /// Width of the pen's line
+    /// Line width of the pen
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     #[arg(default_value_t = DEFAULT_PEN_WIDTH_MM)]
     pen_width: f64,

@@ -135,9 +135,9 @@ pub(super) fn placed(
 pub(super) fn page_error(error: &PageError) -> String {
     match error {
         PageError::Margins { .. } => {
-            format!("{error}; give a smaller --margin or a larger --page")
+            format!("{error}; use a smaller --margin or a larger --page")
         }
-        PageError::NoFieldOfView => format!("{error}; give --projection perspective"),
+        PageError::NoFieldOfView => format!("{error}; use --projection perspective"),
         PageError::NegativeMargin(_) | PageError::Scale => error.to_string(),
     }
 }
@@ -145,7 +145,7 @@ pub(super) fn page_error(error: &PageError) -> String {
 /// Refuses to send a picture to a terminal.
 pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
     if output.path.is_none() && output.format.is_binary() && io::stdout().is_terminal() {
-        return Err("this format is not for the terminal; give -o FILE".into());
+        return Err("this format cannot be written to the terminal; use -o FILE".into());
     }
     Ok(())
 }
@@ -369,9 +369,7 @@ impl<'a> Run<'a> {
         if self.output.strict && !self.notes.warnings.is_empty() {
             drop(self.progress);
             self.notes.warnings.iter().for_each(|warning| messages::warning(warning));
-            return Err("there are warnings, which --strict treats as errors; \
-                        nothing was written"
-                .into());
+            return Err("--strict treats warnings as errors; nothing was written".into());
         }
         self.progress.stage("writing");
         let mut write_seconds = 0.0;
@@ -455,7 +453,7 @@ impl From<WriteError> for OutputError {
 fn with_remedy(error: &WriteError) -> String {
     match error {
         WriteError::Png(PngError::Size { .. }) => {
-            format!("{error}; give another --dpi or --png-width")
+            format!("{error}; use another --dpi or --png-width")
         }
         _ => error.to_string(),
     }
@@ -575,7 +573,8 @@ fn alike_pens(plot: &Plot) -> Option<String> {
     pairs.find(|(a, b)| a.pen.color == b.pen.color && a.pen.width_mm != b.pen.width_mm).map(
         |(a, b)| {
             format!(
-                "pens {} and {} have the same color; software that goes by color takes them for one pen",
+                "pens {} and {} have the same color; software that sorts by color treats them as \
+                 one pen",
                 a.number, b.number
             )
         },

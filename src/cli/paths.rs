@@ -1,4 +1,4 @@
-//! Paths as they are typed.
+//! Paths as typed.
 
 use std::path::{Path, PathBuf};
 

@@ -24,9 +24,9 @@ use super::values::{self, PenText};
 pub(super) struct PlotArgs {
     /// Effort spent reducing pen-up travel: none, fast, best, or a time limit such as 10s
     ///
-    /// The strokes of each pen are joined into as few as possible, ink that lies on other ink is drawn
-    /// once, and then the stroke order is chosen. Except with a time limit, the result is always the
-    /// same. The default is fast; large function surfaces are already drawn line by line.
+    /// The strokes of each pen are joined into as few as possible, overlapping ink is drawn once, and then
+    /// the stroke order is chosen. Except with a time limit, the result is always the same. The default is
+    /// fast; large function surfaces are already drawn line by line.
     #[arg(long, value_name = "EFFORT", value_parser = values::effort)]
     optimize: Option<Effort>,
     /// Remove points closer than this to the simplified line; joints are kept
@@ -40,7 +40,7 @@ pub(super) struct PlotArgs {
     join_tolerance: Option<f64>,
     /// Leave out ink this close to other ink in the same direction
     ///
-    /// The default is half the width of the pen for drawings of models. For drawings read from SVG it is
+    /// The default is half the pen width for drawings of models. For drawings read from SVG it is
     /// 0: only exactly collinear ink is left out.
     #[arg(long, value_name = "MM", value_parser = values::length)]
     overlap_tolerance: Option<f64>,
@@ -50,11 +50,11 @@ pub(super) struct PlotArgs {
     /// Also cut strokes at --split-distance, and start the next layer this far before the cut
     #[arg(long, value_name = "MM", value_parser = values::length, requires = "split_distance")]
     split_overlap: Option<f64>,
-    /// Machine to write HPGL or G-code for, and to estimate the plotting time of
+    /// Machine to write HPGL or G-code for, and to estimate plotting time for
     ///
-    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan, dmp-161, dxy, sketchmate.
-    /// G-code: grbl-servo (default), grbl-z, grbl-laser, marlin. For the estimate also saxi
-    /// (default), axidraw, grbl. A configuration file can have more: [machine.NAME].
+    /// HPGL: hp7475a (default), hp7440a, hp7550, designmate, artisan, dmp-161, dxy, sketchmate. G-code:
+    /// grbl-servo (default), grbl-z, grbl-laser, marlin. For estimates only: saxi (default), axidraw, grbl.
+    /// Configuration files can define more: [machine.NAME].
     #[arg(long, value_name = "NAME", conflicts_with = "gcode_profile")]
     machine: Option<String>,
     /// Templates for your own G-code machine, as TOML
@@ -62,12 +62,11 @@ pub(super) struct PlotArgs {
     gcode_profile: Option<PathBuf>,
     /// The pen for visible or hidden lines, or for one kind of them: WHAT=NUMBER[:WIDTH[:COLOR]]
     ///
-    /// As in visible=1:0.3mm:black; can be given several times. Each number is a layer. For AxiDraw,
-    /// speed=PERCENT, height=PERCENT, delay=MS and pause may follow, as in
-    /// visible=1:0.3mm:black:speed=30:pause; they are written into the layer's label in SVG. WHAT is
-    /// visible, hidden, outline, hidden1, hidden2 … for lines behind that many faces, or a kind of line. For
-    /// surfaces it is also x, y, sheet2 for all lines of the second sheet, or both as in sheet2.level.
-    /// The most special one draws a line.
+    /// As in visible=1:0.3mm:black; may be repeated. Each number is a layer. For AxiDraw, speed=PERCENT,
+    /// height=PERCENT, delay=MS and pause may follow, as in visible=1:0.3mm:black:speed=30:pause; they are
+    /// written into the layer's label in SVG. WHAT is visible, hidden, outline, hidden1, hidden2 … for lines
+    /// behind that many faces, or a kind of line. For surfaces it can also be x, y, sheet2 for all lines of
+    /// the second sheet, or both, as in sheet2.level. The most specific rule applies.
     #[arg(long = "pen", value_name = "PEN", value_parser = values::pen)]
     pens: Vec<PenText>,
 }
@@ -174,7 +173,7 @@ impl Plotting {
         let roles: Vec<PenRole> = self.pens.iter().map(|pen| pen.drawn).collect();
         let idle = idle_pens(&roles, strokes).into_iter();
         let idle = idle.filter(|role| has_hidden || !role.is_hidden());
-        idle.map(|role| format!("--pen {}=… draws nothing: no stroke is left for it", role.name()))
+        idle.map(|role| format!("--pen {}=… draws nothing: no strokes use it", role.name()))
             .collect()
     }
 

@@ -37,7 +37,7 @@ Examples:
   hiddenline preview part.stl --view top --show depth -o heights.png
       Nearer is lighter.
   hiddenline preview part.stl --tone -o tone.png
-      How light each point is, as gray, for hatching.
+      The tone of each point as gray, for hatching.
   hiddenline preview --expr \"sin(r)/r\" --x=-9:9 --y=-9:9 -o hat.png
       A surface z = f(x, y).
   hiddenline preview --grid heights.tif --view isometric -o terrain.png
@@ -46,7 +46,7 @@ Examples:
 /// Samples of a surface along each axis, unless given: more than lines need, since faces are seen.
 const DEFAULT_SAMPLES: usize = 200;
 
-/// Make a shaded picture of models
+/// Render a shaded picture of models
 ///
 /// Takes the same models and the same camera as `draw`, and writes a PNG: a look before you plot. All
 /// engines show the same faces.
@@ -68,13 +68,13 @@ pub(super) struct PreviewArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     #[arg(help_heading = "Output")]
     threads: Option<u16>,
-    /// Print counts and times as JSON, the last line on standard error
+    /// Print counts and times as JSON, on the last line of standard error
     #[arg(long, help_heading = "Output")]
     stats: bool,
     /// Print nothing but errors
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
-    /// Use the preset called NAME from the configuration files
+    /// Use the preset NAME from the configuration files
     #[arg(long, value_name = "NAME", help_heading = "Output")]
     preset: Option<String>,
 }
@@ -124,7 +124,7 @@ fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
         return Ok(());
     }
     let path = path.display();
-    Err(format!("`{path}` does not end in .png; a picture is written as PNG only").into())
+    Err(format!("`{path}` does not end in .png; pictures are written only as PNG").into())
 }
 
 /// Does the job; the error is a message for the user.
@@ -178,10 +178,10 @@ impl From<io::Error> for PictureError {
 /// What went wrong and how to mend it.
 fn with_remedy(error: &PreviewError) -> String {
     match error {
-        PreviewError::NoOrder(_) => format!("{error}; take --engine z-buffer"),
-        PreviewError::NoFieldOfView => format!("{error}; give --projection perspective"),
+        PreviewError::NoOrder(_) => format!("{error}; use --engine z-buffer"),
+        PreviewError::NoFieldOfView => format!("{error}; use --projection perspective"),
         PreviewError::Light(LightError::Inside(..)) => {
-            format!("{error}; give --light-at a point outside, or --light a direction")
+            format!("{error}; use --light-at with a point outside, or --light with a direction")
         }
         PreviewError::Size(..) | PreviewError::Light(_) | PreviewError::Write(_) => {
             error.to_string()

@@ -1,5 +1,5 @@
-//! A line on the terminal that shows the current stage once the work takes over a second, and how much
-//! of it is done if that is known.
+//! A line on the terminal that shows the current stage, and its progress if known, once the work takes more
+//! than a second.
 
 use std::cell::Cell;
 use std::io::IsTerminal;

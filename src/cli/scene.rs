@@ -1,4 +1,4 @@
-//! From what is read to a scene and the camera that looks at it.
+//! From input to a scene and its camera.
 
 use std::error::Error;
 

@@ -20,7 +20,7 @@ use super::values::{self, Smooth};
 /// millimeters.
 const DEFAULT_TOLERANCE_MM: f64 = 0.05;
 
-/// The same in widths of the pen.
+/// The same in pen widths.
 const DEFAULT_TOLERANCE: f64 = 0.25;
 
 /// Refinement does not grow finer nearer to the eye than this share of the distance to the target.
@@ -31,14 +31,14 @@ const NEAREST_SHARE: f64 = 0.01;
 pub(super) struct SmoothArgs {
     /// Refine curved parts until their facets cannot be seen: off, auto, or an angle in degrees
     ///
-    /// auto refines what the model's own vertex normals call smooth. With an angle, faces that meet at
-    /// no more than that belong to one smooth part; 30 suits most models. Circles, cylinders and spheres
-    /// come out as such, and flat faces stay flat.
+    /// auto refines the parts that have smooth vertex normals. With an angle, faces that meet at that angle
+    /// or less belong to one smooth part; 30 suits most models. Circles, cylinders and spheres become round,
+    /// and flat faces stay flat.
     #[arg(long, value_name = "HOW", value_parser = values::smooth, default_value = "off")]
     smooth: Smooth,
-    /// How far facets may be from the curved surface, on paper
+    /// Maximum distance between facets and the curved surface, on paper
     ///
-    /// The default is 0.05 mm, or a quarter of the pen's width if that is less.
+    /// The default is 0.05 mm, or a quarter of the pen width if that is less.
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     smooth_tolerance: Option<f64>,
 }
@@ -87,7 +87,7 @@ impl Smoothing {
         }
         if smoothed.is_cut_short {
             notes.warnings.push(format!(
-                "smoothing ended at {after} triangles, {:.2} mm from the curved surface; give a \
+                "smoothing ended at {after} triangles, {:.2} mm from the curved surface; use a \
                  larger --smooth-tolerance",
                 smoothed.farthest * scale
             ));

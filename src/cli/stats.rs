@@ -24,9 +24,9 @@ pub(super) struct Stats {
     pub(super) triangles: usize,
     /// Distinct edges of these faces, before clipping.
     pub(super) edges: usize,
-    /// Lines of intersection, before any are selected for drawing.
+    /// Intersection lines, before any are selected for drawing.
     pub(super) intersections: usize,
-    /// Edges and lines of intersection selected for drawing.
+    /// Edges and intersection lines selected for drawing.
     pub(super) drawn_edges: usize,
     /// Strokes of the drawing.
     pub(super) strokes: usize,
@@ -53,13 +53,13 @@ pub(super) struct Certified {
     bound_mm: f64,
     /// Chords of drawn lines.
     lines: usize,
-    /// Those of them that are not certified.
+    /// How many of these are not certified.
     uncertified_lines: usize,
     /// Cells between lines.
     cells: usize,
-    /// Those of them that are not certified.
+    /// How many of these are not certified.
     uncertified_cells: usize,
-    /// Places of drawn lines at which the surface is torn open.
+    /// Places on drawn lines where the surface is torn open.
     tears: usize,
     /// How often formulas were enclosed.
     jets: usize,
@@ -111,7 +111,7 @@ pub(super) struct Counts {
     pub(super) culled_triangles: u64,
     /// Drawn edges that were not tested, since they certainly lie behind a surface.
     pub(super) culled_edges: u64,
-    /// Pairs of triangles whose boxes touch, tested for lines of intersection.
+    /// Pairs of triangles whose boxes touch, tested for intersection lines.
     pub(super) intersection_pairs: u64,
     /// Counts of the face engine, if areas are filled.
     #[serde(skip_serializing_if = "Option::is_none")]

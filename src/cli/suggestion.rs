@@ -1,4 +1,4 @@
-//! "Did you mean": names like one that is unknown.
+//! "Did you mean": known names that resemble an unknown one.
 
 /// Names at least this much like an unknown one are suggested (Jaro-Winkler similarity).
 const ALIKE: f64 = 0.75;
@@ -9,9 +9,9 @@ pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -
     let near = near(name, &known);
     let known = known.join(", ");
     if near.is_empty() {
-        format!("; there are {known}")
+        format!("; choose from {known}")
     } else {
-        format!("; did you mean {}? There are {known}", near.join(" or "))
+        format!("; did you mean {}? Choose from {known}", near.join(" or "))
     }
 }
 

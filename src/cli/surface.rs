@@ -1,4 +1,4 @@
-//! `hiddenline surface`: from formulas, heights or points to a drawing's file.
+//! `hiddenline surface`: from formulas, heights or points to a drawing in a file.
 
 mod args;
 mod axes_args;
@@ -81,12 +81,12 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
     warnings.extend(drawing.notes.iter().map(noted));
     let is_json = job.output.format == Format::Json;
     if let Some(every) = drawing.crowded(job.pen_width_mm).filter(|_| !is_json) {
-        warnings.push(format!("lines flow into each other; --every {every} draws fewer"));
+        warnings.push(format!("lines run into each other; --every {every} draws fewer"));
     }
     if drawing.drawn.drawing.is_empty() && drawing.extent.corners().is_some() {
         run.empty_because = format!(
-            "every line of the kinds selected is hidden or shorter than {DEFAULT_SHORTEST_STROKE_MM} \
-             mm; give other --lines or a larger --drawing-scale"
+            "every line of the kinds selected is hidden or shorter than \
+             {DEFAULT_SHORTEST_STROKE_MM} mm; use other --lines or a larger --drawing-scale"
         );
     }
     run.stats.count(drawing.size);
@@ -120,14 +120,14 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
         SurfaceError::Sampling(error) => job.sheets.sampling_error(error),
         SurfaceError::View(error) => with_remedy(error),
         SurfaceError::NoCells => with_samples(error),
-        SurfaceError::TooManyLevels(_) => format!("{error}; give a larger step to --levels"),
-        SurfaceError::TooManyTriangles(_) => format!("{error}; give fewer --samples or --levels"),
+        SurfaceError::TooManyLevels(_) => format!("{error}; use a larger step for --levels"),
+        SurfaceError::TooManyTriangles(_) => format!("{error}; use fewer --samples or --levels"),
         SurfaceError::NoLevels(none) => {
             format!("{}; --lines both draws grid lines", without_levels(none))
         }
-        SurfaceError::OneFamily => format!("{error}: give --lines x or --lines y"),
-        SurfaceError::OneGrid => format!("{error}: give --engine roberts or auto"),
-        SurfaceError::MaxMin | SurfaceError::NearPlane => format!("{error}: give --engine auto"),
+        SurfaceError::OneFamily => format!("{error}: use --lines x or --lines y"),
+        SurfaceError::OneGrid => format!("{error}: use --engine roberts or auto"),
+        SurfaceError::MaxMin | SurfaceError::NearPlane => format!("{error}: use --engine auto"),
         SurfaceError::Page(_) | SurfaceError::Frame => axes_error(error),
         SurfaceError::Order => "--order needs one surface z = f(x, y) over a rectangle without \
                                 holes, drawn with grid lines only: leave --order out"
@@ -140,7 +140,7 @@ fn failed(job: &Job, error: &SurfaceError) -> String {
 pub(super) fn axes_error(error: &SurfaceError) -> String {
     match error {
         SurfaceError::Page(error) => page_error(error),
-        SurfaceError::Frame => format!("{error}: give --view top or other --axes"),
+        SurfaceError::Frame => format!("{error}: use --view top or other --axes"),
         _ => error.to_string(),
     }
 }
@@ -155,7 +155,7 @@ pub(super) fn noted(note: &SurfaceNote) -> String {
                 "{note}; a larger --page, a smaller --text-height or shorter --axis-titles help"
             )
         }
-        SurfaceNote::TooManyTicks => format!("{note}; give a larger --tick-step"),
+        SurfaceNote::TooManyTicks => format!("{note}; use a larger --tick-step"),
         _ => note.to_string(),
     }
 }
@@ -163,7 +163,10 @@ pub(super) fn noted(note: &SurfaceNote) -> String {
 fn without_levels(none: &NoLevels) -> String {
     match none {
         NoLevels::OutOfRange { low, high } => {
-            format!("the surface has heights from {low} to {high}: none of --levels is there")
+            format!(
+                "the surface has heights from {low} to {high}: none of the --levels is in this \
+                 range"
+            )
         }
         NoLevels::Level { .. } => none.to_string(),
     }

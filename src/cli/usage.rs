@@ -134,11 +134,11 @@ fn with_hints(mut error: clap::Error, command: &Command, typed: &[OsString]) -> 
         command.is_some_and(|c| c.get_arguments().any(|arg| arg.get_long() == Some(long)))
     };
     let hint = match unknown.split('=').next().unwrap_or_default() {
-        size if SIZES.contains(&size) && has("png-width") => {
-            Some("the paper is set by '--page WIDTHxHEIGHT', the pixels of a PNG by '--png-width'")
-        }
+        size if SIZES.contains(&size) && has("png-width") => Some(
+            "the paper size is set by '--page WIDTHxHEIGHT', the width of a PNG by '--png-width'",
+        ),
         size if SIZES.contains(&size) && has("size") => {
-            Some("the pixels are set by '--size WIDTHxHEIGHT'")
+            Some("the size in pixels is set by '--size WIDTHxHEIGHT'")
         }
         _ => None,
     };

@@ -57,7 +57,8 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
 
 /// Degrees from 0 to 180.
 pub(super) fn crease(text: &str) -> Result<f64, String> {
-    not_negative(text).and_then(|x| if x <= 180.0 { Ok(x) } else { Err("at most 180".into()) })
+    not_negative(text)
+        .and_then(|x| if x <= 180.0 { Ok(x) } else { Err("must be at most 180".into()) })
 }
 
 /// Which parts of a model are smooth.
@@ -74,7 +75,7 @@ pub(super) fn smooth(text: &str) -> Result<Smooth, String> {
         "auto" => Ok(Smooth::Parts(SmoothParts::ByNormals)),
         _ => match crease(text) {
             Ok(degrees) => Ok(Smooth::Parts(SmoothParts::Below(degrees))),
-            Err(_) => Err("give off, auto, or degrees from 0 to 180".into()),
+            Err(_) => Err("expected off, auto, or an angle from 0 to 180 degrees".into()),
         },
     }
 }
@@ -89,7 +90,7 @@ pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     let numbers = text.split(',').map(number).collect::<Result<Vec<_>, _>>();
     match numbers.as_deref() {
         Ok(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
-        _ => Err("give three numbers with commas between them, as in 3,-2,1.5".into()),
+        _ => Err("expected three numbers separated by commas, as in 3,-2,1.5".into()),
     }
 }
 
@@ -123,7 +124,7 @@ pub(super) fn distance(text: &str) -> Result<f64, String> {
 
 /// Lengths of dash and gap.
 pub(super) fn dash(text: &str) -> Result<Dash, String> {
-    let both = || "give the lengths of dash and gap in mm, as in 2.5,1.25".to_owned();
+    let both = || "expected dash and gap lengths in mm, as in 2.5,1.25".to_owned();
     let (dash, gap) = text.split_once(',').ok_or_else(both)?;
     Ok(Dash { dash_mm: positive_length(dash)?, gap_mm: positive_length(gap)? })
 }
@@ -134,7 +135,7 @@ pub(super) fn scale(text: &str) -> Result<f64, String> {
     let scale = positive(paper).and_then(|paper| Ok(paper / positive(model)?));
     match scale {
         Ok(scale) if scale > 0.0 && scale.is_finite() => Ok(scale),
-        _ => Err("give a scale as in 1:10".into()),
+        _ => Err("expected a scale such as 1:10".into()),
     }
 }
 
@@ -210,7 +211,7 @@ pub(super) fn effort(text: &str) -> Result<Effort, String> {
                 .filter(|seconds| *seconds > 0.0)
                 .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
                 .map(Effort::Within)
-                .ok_or_else(|| "give none, fast, best, or seconds as in 10s".to_owned())
+                .ok_or_else(|| "expected none, fast, best, or a time limit such as 10s".to_owned())
         }
     }
 }
@@ -229,7 +230,7 @@ pub(super) struct PenText {
 
 /// A pen as `visible=1:0.3mm:black`; width and color may be left out.
 pub(super) fn pen(text: &str) -> Result<PenText, String> {
-    let example = || "give a pen as in visible=1:0.3mm:black".to_owned();
+    let example = || "expected a pen such as visible=1:0.3mm:black".to_owned();
     let (drawn, rest) = text.split_once('=').ok_or_else(example)?;
     let is_control = |part: &&str| *part == "pause" || part.contains('=');
     let (controls, parts): (Vec<&str>, Vec<&str>) =
@@ -254,14 +255,16 @@ fn layer_controls(parts: &[&str]) -> Result<LayerControls, String> {
         let (name, value) = part.split_once('=').unwrap_or((part, ""));
         let number = |low: u32, high: u32| {
             let value = value.trim().parse().ok().filter(|n| (low..=high).contains(n));
-            value.map(Some).ok_or_else(|| format!("`{part}`: give a number from {low} to {high}"))
+            value
+                .map(Some)
+                .ok_or_else(|| format!("`{part}`: expected a number from {low} to {high}"))
         };
         match name.trim() {
             "pause" => controls.pause = true,
             "speed" => controls.speed = number(1, 110)?,
             "height" => controls.height = number(0, 100)?,
             "delay" => controls.delay_ms = number(0, 100_000)?,
-            _ => return Err(format!("`{part}`: give speed=, height=, delay= or pause")),
+            _ => return Err(format!("`{part}`: expected speed=, height=, delay= or pause")),
         }
     }
     Ok(controls)
@@ -288,7 +291,7 @@ fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
             ("", _) => Ok(PenRole::Sheet(sheet)),
             (_, Ok(PenRole::Kind(kind))) => Ok(PenRole::KindOfSheet(sheet, kind)),
             (_, Ok(PenRole::Family(family))) => Ok(PenRole::FamilyOfSheet(sheet, family)),
-            (_, Ok(_)) => Err(format!("`{line}` is no kind of line of a sheet")),
+            (_, Ok(_)) => Err(format!("`{line}` is not a line kind of a sheet")),
             (_, Err(error)) => Err(error),
         };
     }
@@ -298,14 +301,14 @@ fn drawn_by_pen(name: &str) -> Result<PenRole, String> {
     pen_roles().find(|drawn| drawn.name() == name).ok_or_else(|| {
         let names: Vec<_> = pen_roles().map(PenRole::name).collect();
         let names = names.iter().map(AsRef::as_ref);
-        format!("no pen draws `{name}`{}", suggestion(name, names))
+        format!("unknown line kind `{name}`{}", suggestion(name, names))
     })
 }
 
 /// The bytes of a color by name or as `#rgb`, `#rrggbb`, `rgb(…)`.
 pub(super) fn rgb(text: &str) -> Result<[u8; 3], String> {
     let color: svgtypes::Color =
-        text.parse().map_err(|_| format!("`{text}` is not a color; give a name or #rrggbb"))?;
+        text.parse().map_err(|_| format!("`{text}` is not a color; use a name or #rrggbb"))?;
     Ok([color.red, color.green, color.blue])
 }
 
@@ -313,14 +316,14 @@ pub(super) fn rgb(text: &str) -> Result<[u8; 3], String> {
 pub(super) fn picture_size(text: &str) -> Result<(u32, u32), String> {
     let side = |text: &str| text.trim().parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n));
     let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
-    side(width)
-        .zip(side(height))
-        .ok_or_else(|| format!("give WIDTHxHEIGHT, each from 1 to {LARGEST_SIDE}, as in 1200x900"))
+    side(width).zip(side(height)).ok_or_else(|| {
+        format!("expected WIDTHxHEIGHT, each from 1 to {LARGEST_SIDE}, as in 1200x900")
+    })
 }
 
 /// A part of the whole, from 0 to 1.
 pub(super) fn part(text: &str) -> Result<f64, String> {
-    not_negative(text).and_then(|x| if x <= 1.0 { Ok(x) } else { Err("at most 1".into()) })
+    not_negative(text).and_then(|x| if x <= 1.0 { Ok(x) } else { Err("must be at most 1".into()) })
 }
 
 /// A color by name or as `#rgb`, `#rrggbb`, `rgb(…)`; the result is `#rrggbb`.

@@ -1,4 +1,4 @@
-//! Where the background is seen, on a grid of the pen's size.
+//! Where the background is visible, on a grid with cells of the pen width.
 //!
 //! ```text
 //!      ░░░░░░░░░░░░░░        The background counts where a disc as wide as the pen finds room in
@@ -7,7 +7,7 @@
 //!      ░░░└──────┘░░░
 //! ```
 //!
-//! What is decided here is how lines look on paper. So a raster will do, and faces of no thickness
+//! These decisions only affect how lines look on paper, so a raster is good enough, and infinitely thin faces
 //! do no harm.
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,7 +21,7 @@ use crate::strokes::draft::DraftPoint;
 
 use super::tiles::Tiles;
 
-/// Cells across a pen's width, for most pages.
+/// Cells across a pen width, for most pages.
 const CELLS_PER_PEN: f64 = 3.0;
 
 /// Most cells of the grid. Larger pages get larger ones.

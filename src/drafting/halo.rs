@@ -1,4 +1,4 @@
-//! Halos: farther lines stop short of nearer ones, so that one sees which passes in front.
+//! Halos: farther lines stop short of nearer ones, which shows which line passes in front.
 //!
 //! ```text
 //!            │ nearer
@@ -26,7 +26,7 @@ const LONGEST: f64 = 3.0;
 
 /// Cuts `halo`, in image units, out of lines beside nearer ones.
 ///
-/// A line is nearer when it is so by more than the pen's width, as a length at that place: lines that
+/// A line is nearer when it is so by more than the pen width, as a length at that place: lines that
 /// meet in space do not cut each other. O(segments + crossings), in parallel.
 pub(super) fn cut(draft: &Draft, paper: &Paper, halo: f64, is_perspective: bool) -> Draft {
     let search = Search {

@@ -1,4 +1,4 @@
-//! A draft, and what is near what in it.
+//! A draft, with an index of which strokes are near each other.
 
 use std::sync::OnceLock;
 
@@ -12,7 +12,7 @@ use super::near_ends::SegmentsNearEnds;
 /// An end this near to a stroke lies on it.
 pub(super) const ON_STROKE_MM: f64 = 0.02;
 
-/// A draft with its segments by place, for searches within a pen's width.
+/// A draft with its segments by place, for searches within a pen width.
 ///
 /// They are sorted when they are first searched, and again after the draft was changed.
 pub(super) struct Inked<'a> {
@@ -46,7 +46,7 @@ impl<'a> Inked<'a> {
         self.grid.get_or_init(|| self.paper.grid(&self.draft, self.paper.pen))
     }
 
-    /// The segments within a pen's width, or within [`ON_STROKE_MM`], of each end.
+    /// The segments within a pen width, or within [`ON_STROKE_MM`], of each end.
     pub(super) fn near_ends(&self, ends: &Ends) -> &SegmentsNearEnds {
         let reach = self.paper.pen.max(ON_STROKE_MM * self.paper.mm);
         self.near_ends.get_or_init(|| SegmentsNearEnds::new(&self.draft, ends, self.paper, reach))

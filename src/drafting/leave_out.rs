@@ -418,7 +418,7 @@ impl<'a> Search<'a> {
             (from - to).abs()
         };
         let least = OWN_REACH * reach;
-        // A closed stroke goes on at its first point.
+        // A closed stroke continues at its first point.
         let is_closed = !self.ends.has(stroke);
         let most = if is_closed { self.ends.length(stroke) - least } else { f64::INFINITY };
         let (d0, d1) = (apart(t0), apart(t1));

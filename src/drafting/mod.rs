@@ -1,7 +1,7 @@
-//! From lines that are exactly visible to the lines that a draughtsman would draw.
+//! From exactly visible lines to the lines that a drafter would draw.
 //!
-//! Everything here selects, joins, cuts or leaves out lines on paper, in lengths of the pen's width and
-//! in millimeters. What is visible was decided before, and no line is added.
+//! Everything here selects, joins, cuts or leaves out lines on paper, with lengths in pen widths and
+//! millimeters. Visibility has already been decided, and no line is added.
 //!
 //! ```text
 //!   draft ─► outline ─► tidy: stitch, corners, shadows, specks and spurs
@@ -36,7 +36,7 @@ use self::leave_out::{Rule, Stretch, crowded_share, leave_out};
 use self::near::SegmentGrid;
 use self::tidy::{rejoin, tidy};
 
-/// In drawings of grown models, figures smaller than this are specks, in millimeters.
+/// In drawings of organic models, figures smaller than this are specks, in millimeters.
 const FIGURE_MM: f64 = 3.0;
 
 /// Ink is sorted into cells at least this many times as large as the reach of a search: several cells
@@ -121,7 +121,7 @@ pub struct Drafted {
     pub overlap_mm: f64,
     /// Length of what was left out where lines crowded each other, in millimeters.
     pub thinned_mm: f64,
-    /// The share of the ink that has other ink beside it within a pen's width, before lines are thinned.
+    /// The share of the ink that has other ink beside it within a pen width, before lines are thinned.
     pub crowded_share: f64,
 }
 
@@ -188,7 +188,7 @@ pub fn finish(
 struct Paper {
     /// A millimeter.
     mm: f64,
-    /// The pen's width.
+    /// The pen width.
     pen: f64,
     /// Smaller figures are specks.
     figure: f64,

@@ -12,7 +12,7 @@ use super::near::part_within;
 /// Ends are searched this much farther than asked, as a fraction, for rounding.
 const REACH_SLACK: f64 = 1e-9;
 
-/// Where more ends than this share a cell, none goes on into another: what is near which of them is not
+/// Where more ends than this share a cell, none continues into another: what is near which of them is not
 /// even looked for, since that may be all pairs of the lines of a drawing.
 const MAX_ENDS: usize = 128;
 

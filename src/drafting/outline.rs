@@ -1,4 +1,4 @@
-//! Which parts of the lines are outline: those beside which the background is seen on paper.
+//! Which parts of the lines are outline: those seen against the background on paper.
 
 use crate::engines::edge::outline::can_be_outline;
 use crate::strokes::draft::{Draft, DraftPoint};

@@ -1,7 +1,7 @@
-//! Joins ends that a draughtsman would draw through.
+//! Joins ends that a drafter would draw through.
 //!
 //! ```text
-//!   (a)  ──────╴ ╶──────        two ends near each other that go on into each other
+//!   (a)  ──────╴ ╶──────        two ends near each other that continue into each other
 //!
 //!            ╱ stub
 //!   (b)  ───●───────            a stroke ends on another one (●), which ends a little farther on,
@@ -9,7 +9,7 @@
 //!         ╱ E                   stub is cut off, and the rest is joined to E
 //! ```
 //!
-//! The contour of a mesh zigzags along facets and hides itself at every other fold, which breaks it into
+//! The silhouette of a mesh zigzags along facets and hides itself at every other fold, which breaks it into
 //! such pieces.
 
 use glam::DVec2;
@@ -20,7 +20,7 @@ use super::edits::{Edits, Ends, Tidied};
 use super::inked::{Inked, ON_STROKE_MM};
 use super::near_ends::SegmentsNearEnds;
 
-/// Strokes go on into each other when they turn less than this.
+/// Strokes continue into each other when they turn less than this.
 const MAX_TURN_DEG: f64 = 60.0;
 
 /// The direction at an end is that of the last stretch of this length.
@@ -139,7 +139,7 @@ fn joints_at(end: u32, inked: &Inked, near_ends: &SegmentsNearEnds, ends: &Ends)
     joints
 }
 
-/// Whether the last `stub` of the stroke at `other` lies within a pen's width of the last part of the
+/// Whether the last `stub` of the stroke at `other` lies within a pen width of the last part of the
 /// stroke at `end`.
 fn runs_beside(end: u32, other: u32, stub: f64, ends: &Ends, paper: &Paper) -> bool {
     let reach = 2.0 * stub + paper.pen;

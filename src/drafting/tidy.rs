@@ -1,15 +1,15 @@
-//! From exact pieces to clean strokes: what belongs together is joined, what is lost without being missed
-//! is left out.
+//! From exact pieces to clean strokes: pieces that belong together are joined, and pieces that nobody would
+//! miss are left out.
 //!
 //! | step | does |
 //! |---|---|
-//! | stitch | joins ends that go on into each other; see [`stitch`](super::stitch) |
+//! | stitch | joins ends that continue into each other; see [`stitch`](super::stitch) |
 //! | corners | joins two ends that meet with no third one near |
 //! | shadows | leaves out short strokes that lie beside longer ink |
 //! | specks, spurs | leaves out small isolated figures, and short strokes with a loose end |
 //!
-//! The order matters: what is not joined first is eaten piece by piece. An outline is never opened, and
-//! borders and closed figures stay.
+//! The order matters: pieces that are not joined first would be dropped one by one. An outline is never
+//! opened, and borders and closed figures stay.
 
 use std::cmp::Reverse;
 
@@ -72,11 +72,11 @@ pub(super) fn tidy(
     inked.into_draft()
 }
 
-/// Joins what goes on into each other after parts were left out, around corners too, and leaves out
+/// Joins what continues into each other after parts were left out, around corners too, and leaves out
 /// what is lost without being missed.
 ///
 /// Of hidden lines only ends that touch are joined: to cross the gap where a part was left out is to draw it
-/// again. Visible ones are joined as before: fewer strokes are worth a pen's width drawn twice.
+/// again. Visible ones are joined as before: fewer strokes are worth a pen width drawn twice.
 pub(super) fn rejoin(
     draft: Draft,
     paper: &Paper,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 /// Cells on a side of a tile: its bits are one number, row by row.
 const SIDE: usize = 8;
 
-/// The cells of a grid in square tiles. Cells of tiles that were not asked for are not set.
+/// The cells of a grid in square tiles. Cells of tiles that were not requested are not set.
 pub(super) struct Tiles {
     /// Tiles in a row.
     columns: usize,
@@ -24,7 +24,7 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// None yet, for a grid of so many cells.
+    /// None yet, for a grid of this many cells.
     pub(super) fn new(columns: usize, rows: usize) -> Self {
         let (columns, rows) = (columns.div_ceil(SIDE), rows.div_ceil(SIDE));
         let words = columns.div_ceil(64);
@@ -58,7 +58,7 @@ impl Tiles {
         }
     }
 
-    /// Gives every tile that was asked for its number, and bits that are not set.
+    /// Gives every tile that was requested its number, and bits that are not set.
     pub(super) fn number(&mut self) {
         let mut n = 0;
         self.ranks = Vec::with_capacity(self.is_asked.len());

@@ -114,7 +114,7 @@ pub(super) fn view<'a>(
     ViewedScene::with_edges(scene, camera, edges)
 }
 
-/// A fold or a piece of the border with the sheet that it belongs to. Lines of intersection belong to none.
+/// A fold or a piece of the border with the sheet that it belongs to. Intersection lines belong to none.
 fn in_sheet(scene: &Scene, line: SelectedLine) -> SelectedLine {
     if !matches!(line.kind, StrokeKind::Silhouette | StrokeKind::Boundary) {
         return line;

@@ -80,7 +80,7 @@ pub struct SurfaceOutput {
     pub extent: Extent,
     /// How many samples there are, in words.
     pub samples: String,
-    /// How close drawn lines are to the formulas; none if that is not asked for, or not by formulas.
+    /// How close drawn lines are to the formulas; none if that is not requested, or not by formulas.
     pub certificate: Option<Certificate>,
     /// What is worth knowing about the drawing.
     pub notes: Vec<SurfaceNote>,
@@ -305,7 +305,7 @@ impl Ink {
     }
 }
 
-/// Which level curves are labelled.
+/// Which level curves are labeled.
 fn labels(lines: &SurfaceLines, levels: &LevelSet, camera: &Camera) -> Labels {
     let is_level = lines.levels.is_some() && !lines.exact;
     match lines.labels {
@@ -461,7 +461,7 @@ fn meshed_options(lines: &SurfaceLines, surface: &SampledSurface) -> meshed::Mes
         border: lines.has_border(surface),
         exact: lines.exact,
         underside: lines.underside,
-        // What is done to some level curves must not be done to the lines that they go on into.
+        // What is done to some level curves must not be done to the lines that they continue into.
         apart_by_kind: lines.apart_by_kind || lines.levels.is_some() && !lines.exact,
         shortest_stroke_mm: lines.shortest_stroke_mm,
     }

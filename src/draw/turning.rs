@@ -1,5 +1,5 @@
-//! Lines for turning: the visible lines of a view in space, found quickly, so that they can be turned a
-//! little further before the next ones are there.
+//! Drafts for turning: the visible lines of a view in space, found quickly, which can be turned slightly
+//! further until the next ones arrive.
 //!
 //! ```text
 //!   eye 1 ●╌╌╌╌╌╌╌╌┐                    What eye 1 sees is found as for a drawing. Eye 2 is shown the
@@ -7,7 +7,7 @@
 //!   eye 2 ●╌╌╌╌╌╌╌╌┘                    what hides what is a moment old.
 //! ```
 //!
-//! Nothing is joined with care, dropped, dashed or ordered.
+//! Nothing is carefully joined, dropped, dashed or ordered.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The algorithms that decide what is hidden.
+//! Hidden-line and visible-surface algorithms.
 //!
 //! | family | from | to |
 //! |---|---|---|

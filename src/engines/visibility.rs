@@ -1,4 +1,4 @@
-//! What the line engines answer: for every drawn segment, which parts are hidden how often.
+//! The answer of the line engines: the spans of every drawn segment, with their quantitative invisibility.
 
 /// A run of a segment with constant quantitative invisibility.
 ///
@@ -23,7 +23,7 @@ pub struct Span {
 /// Spans of many segments in one flat array, in the order of the segments.
 ///
 /// The spans of a segment follow each other without gaps from where the near plane lets it begin
-/// to where it ends; neighbours differ in `qi` or in `doubled`. A segment that the near plane
+/// to where it ends; neighbors differ in `qi` or in `doubled`. A segment that the near plane
 /// removes, or whose image is a point, has none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Visibility {

@@ -8,8 +8,8 @@
 //!      ●───────●
 //! ```
 //!
-//! The mesh is not cut: ends are exact points on edges. The triangles of a planar face make one segment
-//! of what they have in common; a bent face is as its triangles are.
+//! The mesh is not cut: ends are exact points on edges. The pieces in the triangles of a planar face make one
+//! segment; a bent face is cut triangle by triangle.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 

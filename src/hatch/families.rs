@@ -6,9 +6,9 @@
 //!  ╱ ╱╲ ╲ ╲  wrap the form                ╲══╲ one line on paper
 //! ```
 //!
-//! Lines of a family are numbered. Their base distance is an eighth of the least one that the darkest
-//! tone needs on a face square to the viewer, so that slanted faces find lines near enough to each
-//! other. Their ranks say which of them are drawn where: a darker place keeps every line of a lighter one.
+//! Lines of a family are numbered. Their base distance is an eighth of the least one that the darkest tone
+//! needs on a face square to the viewer, so that slanted faces get lines close enough together. Their ranks
+//! say which of them are drawn where: a darker place keeps every line of a lighter one.
 
 use glam::{DVec2, DVec3};
 
@@ -18,13 +18,13 @@ use crate::camera::{Camera, Frame, Projection};
 use crate::predicates::FreePlane;
 use crate::shading::light::Light;
 
-/// So many lines at base distance make the least distance of lines that are drawn.
+/// This many lines at base distance make the least distance of lines that are drawn.
 const BASE_LINES: f64 = 8.0;
 
-/// Sections are turned so far from upright towards the light, across the view, in degrees.
+/// Sections are turned so far from upright toward the light, across the view, in degrees.
 const TOWARDS_LIGHT_DEG: f64 = 30.0;
 
-/// And so far towards the viewer.
+/// And so far toward the viewer.
 const TOWARDS_VIEWER_DEG: f64 = 10.0;
 
 /// Where a face's normal is this near to the planes' own, as a cosine, lines are far apart and wander;
@@ -254,7 +254,7 @@ fn sections(
     families
 }
 
-/// Up, turned towards the light and the viewer.
+/// Up, turned toward the light and the viewer.
 fn usual_normal(camera: &Camera, light: &Light) -> DVec3 {
     let frame = camera.frame();
     let is_up_along_view = frame.forward.dot(DVec3::Z).abs() > ALONG_NORMAL;

@@ -23,7 +23,7 @@ use crate::strokes::StrokeKind;
 const CELL_MM: f64 = 4.0;
 
 /// What lies behind an outline by less than this many margins is not behind it but beside it: a face
-/// that goes on there.
+/// that continues there.
 const LEAST_DEPTH_IN_GAPS: f64 = 2.0;
 
 /// The lines that have margins: where the surface ends in the image.

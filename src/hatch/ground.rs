@@ -1,4 +1,4 @@
-//! The ground: a horizontal plane that takes shadows, has no lines and hides nothing.
+//! The ground: a horizontal plane that catches shadows, has no lines and hides nothing.
 //!
 //! ```text
 //!      ☼  ╲            The shadow lies within that of the box around the scene: the hull of the

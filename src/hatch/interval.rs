@@ -1,4 +1,4 @@
-//! Parts of segments that are seen.
+//! Visible parts of segments.
 
 /// A visible part of a segment. Where a margin hides it, there is none.
 #[derive(Debug, Clone, Copy, PartialEq)]

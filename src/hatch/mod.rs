@@ -9,9 +9,9 @@
 //! ```
 //!
 //! A hatch line is where a plane cuts the faces of the scene. Each of its segments lies in a face and has
-//! exact ends, and the line engine answers twice for it: which parts the eye sees, and which parts the
-//! light sees. Both answers are parameters along the same segment, so borders of shadows are as exact as
-//! what hides what. Only then comes the tone, which is rounded: how many of the lines are drawn.
+//! exact ends, and the line engine answers twice for it: which parts the eye sees, and which parts the light
+//! sees. Both answers are parameters along the same segment, so borders of shadows are as exact as
+//! visibility. Only then comes the tone, which is rounded: how many of the lines are drawn.
 //!
 //! Lines of one family nest: a darker place keeps every line of a lighter one (prioritized strokes:
 //! G. Winkenbach and D. H. Salesin, "Computer-generated pen-and-ink illustration", SIGGRAPH 1994; E. Praun
@@ -55,9 +55,9 @@ pub use self::options::{
     HatchPage, HatchShadows, LEVELS, MOST_FAMILIES,
 };
 
-/// Hatches a surface as its drawing shows it. There is no hatching if the drawing kept no scene.
+/// Hatches a surface as its drawing shows it. Without a scene in the drawing, nothing is hatched.
 ///
-/// With `exact` every line of base distance is there; see [`hatch`]. `width_mm` is that of the pen.
+/// With `exact` every line at the base distance is drawn; see [`hatch`]. `width_mm` is the pen width.
 ///
 /// # Errors
 /// See [`HatchError`].
@@ -191,11 +191,11 @@ pub fn planes(
 /// What a camera sees of each segment.
 struct Seen {
     visibility: Visibility,
-    /// For each segment its place among those that were asked for, or [`UNASKED`].
+    /// For each segment its place among those that were requested, or [`UNASKED`].
     place: Vec<u32>,
 }
 
-/// A segment that was not asked for, or whose image is a point.
+/// A segment that was not requested, or whose image is a point.
 const UNASKED: u32 = u32::MAX;
 
 impl Seen {
@@ -211,7 +211,7 @@ impl Seen {
         Self { visibility, place }
     }
 
-    /// The spans of a segment; none if it was not asked for.
+    /// The spans of a segment; none if it was not requested.
     fn spans(&self, segment: usize) -> &[Span] {
         match self.place[segment] {
             UNASKED => &[],

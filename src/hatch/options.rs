@@ -1,4 +1,4 @@
-//! What is hatched, and how.
+//! What to hatch, and how.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -6,24 +6,23 @@ use thiserror::Error;
 use crate::page::Page;
 use crate::shading::light::{AMBIENT, LightError, LightSource};
 
-/// Tones at least this light stay white, unless set otherwise.
+/// By default, tones at least this light stay white.
 pub const DEFAULT_WHITE: f64 = 0.85;
 
-/// How much of the paper the ink covers in the darkest places, unless set otherwise. More makes a gray
-/// mush and wets the paper.
+/// The default share of the paper that ink covers in the darkest places. More gives a muddy gray and soaks
+/// the paper.
 pub const DEFAULT_BLACK: f64 = 0.6;
 
-/// Hatch strokes are at least this long in millimeters, unless set otherwise or the pen is wide.
+/// The default length of the shortest hatch stroke in millimeters, unless the pen is wide.
 pub const DEFAULT_SHORTEST_HATCH_MM: f64 = 1.0;
 
-/// White margin beside nearer outlines in millimeters, unless set otherwise.
+/// The default white margin beside nearer outlines in millimeters.
 pub const DEFAULT_HATCH_GAP_MM: f64 = 0.5;
 
-/// Faces that meet at this angle in degrees or less are shaded as one curved surface, unless set
-/// otherwise.
+/// By default, faces that meet at this angle in degrees or less are shaded as one curved surface.
 pub const DEFAULT_SMOOTH_DEG: f64 = 30.0;
 
-/// Most families of lines.
+/// The maximum number of families of lines.
 pub const MOST_FAMILIES: usize = 8;
 
 /// Fewest and most levels of darkness; see [`HatchLevels::Steps`].
@@ -32,7 +31,7 @@ pub const LEVELS: std::ops::RangeInclusive<u32> = 2..=6;
 /// What hatch lines are.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HatchMethod {
-    /// Parallel planes in space cut through the model, so that lines wrap its form.
+    /// Parallel planes in space cut through the model, so lines wrap around its form.
     #[default]
     Sections,
     /// Parallel lines on paper.
@@ -42,31 +41,30 @@ pub enum HatchMethod {
 /// How the spacing of lines follows the tone.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HatchLevels {
-    /// Every second line ends where half of the ink will do. Darkness is right to a factor of √2.
+    /// Every second line ends where half the ink is enough. Darkness is right to a factor of √2.
     #[default]
     Halving,
     /// The same, with darkness rounded to this many steps first; for flat faces.
     Steps(u32),
-    /// One line after the other ends, so that the mean darkness is right everywhere; even tones look
-    /// striped.
+    /// Lines end one after another, so the mean darkness is right everywhere; even tones look striped.
     Continuous,
 }
 
 /// Which shadows are hatched.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum HatchShadows {
-    /// What faces away from the light, and what something else keeps the light from.
+    /// Faces turned away from the light, and shadows cast by other faces.
     #[default]
     Cast,
-    /// Only what faces away from the light.
+    /// Only faces turned away from the light.
     Own,
-    /// None: tone falls off evenly all around.
+    /// No shadows: tone falls off evenly on all sides.
     None,
-    /// Nothing but shadows, of both kinds.
+    /// Only shadows, of both kinds.
     Only,
 }
 
-/// A horizontal plane that takes shadows.
+/// A horizontal plane that catches shadows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ground {
     /// At the lowest point of the scene.
@@ -82,11 +80,11 @@ pub struct HatchMaterial {
     pub name: String,
     /// The angle of the first family of lines in degrees; others turn with it.
     pub angle_deg: Option<f64>,
-    /// How much of the paper the ink covers in the darkest places.
+    /// Share of the paper that ink covers in the darkest places.
     pub black: Option<f64>,
 }
 
-/// What is hatched, and how.
+/// What to hatch, and how.
 ///
 /// ```
 /// use hiddenline::{Ground, HatchOptions, LightSource};
@@ -103,24 +101,23 @@ pub struct HatchOptions {
     pub method: HatchMethod,
     /// Where the light comes from.
     pub light: LightSource,
-    /// The angle on paper of each family of lines in degrees, counter-clockwise from the right, on
-    /// faces that are square to the viewer; empty for the usual one.
+    /// The angle on paper of each family of lines in degrees, counter-clockwise from the right, on faces that
+    /// are square to the viewer; empty for the default.
     pub angles_deg: Vec<f64>,
-    /// The normal of the planes of [`HatchMethod::Sections`]; `None` for up, turned a little towards
-    /// the light and the viewer.
+    /// The normal of the planes of [`HatchMethod::Sections`]; `None` for up, turned slightly toward the light
+    /// and the viewer.
     pub normal: Option<DVec3>,
-    /// Whether a second family crosses the first one, unless there are angles.
+    /// Whether a second family crosses the first one, unless angles are given.
     pub cross: bool,
     /// How the spacing follows the tone.
     pub levels: HatchLevels,
-    /// Tones at least this light stay white, from 0 to 1.
+    /// Leave tones white that are at least this light, from 0 to 1.
     pub white: f64,
-    /// How much of the paper the ink covers in the darkest places, from 0 to 1.
+    /// Share of the paper that ink covers in the darkest places, from 0 to 1.
     pub black: f64,
-    /// The tone of what no light reaches, from 0 to 1.
+    /// The tone where no light reaches, from 0 to 1.
     pub ambient: f64,
-    /// Strokes are at least this long; `None` for a millimeter, or three widths of the pen if that is
-    /// more.
+    /// Strokes are at least this long; `None` for a millimeter, or three pen widths if that is more.
     pub shortest_mm: Option<f64>,
     /// Faces that meet at this angle or less are shaded as one curved surface.
     pub smooth_deg: f64,
@@ -128,9 +125,9 @@ pub struct HatchOptions {
     pub shadows: HatchShadows,
     /// White margin beside nearer outlines; zero for none.
     pub gap_mm: f64,
-    /// A plane that takes shadows.
+    /// A plane that catches shadows.
     pub ground: Option<Ground>,
-    /// Materials that are hatched in another way.
+    /// Materials with their own hatching.
     pub materials: Vec<HatchMaterial>,
 }
 
@@ -193,7 +190,7 @@ impl HatchOptions {
         Self { shadows, ..self }
     }
 
-    /// A plane that takes shadows.
+    /// A plane that catches shadows.
     #[must_use]
     pub fn ground(self, ground: Ground) -> Self {
         Self { ground: Some(ground), ..self }
@@ -239,14 +236,14 @@ impl HatchOptions {
     }
 }
 
-/// What of the image is on paper, at what scale, and with what pen.
+/// The part of the image that is on paper, its scale, and the pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HatchPage {
     /// Millimeters on paper for one unit of the image.
     pub mm_per_image_unit: f64,
-    /// The lowest and the highest corner of what is between the margins, in image coordinates.
+    /// The lowest and the highest corner of the area between the margins, in image coordinates.
     pub window: (glam::DVec2, glam::DVec2),
-    /// Width of the pen's line as it is on paper.
+    /// Line width of the pen on paper.
     pub pen_width_mm: f64,
 }
 
@@ -258,10 +255,10 @@ impl HatchPage {
     }
 }
 
-/// Why nothing is hatched.
+/// Why hatching failed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum HatchError {
-    /// The light makes no shadows.
+    /// The light cannot cast shadows.
     #[error(transparent)]
     Light(#[from] LightError),
     /// The light does not shine on the ground.

@@ -1,4 +1,4 @@
-//! From pieces to strokes: chained along their lines, without what is too short for a pen.
+//! From pieces to strokes: chained along their lines, without strokes too short for a pen.
 //!
 //! ```text
 //!   segments of one line    ├────┼──┼─────┼───┼──────┤     each ends where the next one begins

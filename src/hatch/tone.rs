@@ -1,4 +1,4 @@
-//! Tone: how dark a place is, and where a line of a family is drawn for that.
+//! Tone: how dark a place is, and where a line of a family is drawn to match.
 //!
 //! ```text
 //!   tone      T = ambient + (1 − ambient) · max(0, n · l) where the light reaches, else ambient

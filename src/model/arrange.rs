@@ -1,4 +1,4 @@
-//! Several models as one mesh: each turned upright, scaled, rotated and moved into place; then near
+//! Several models as one mesh: each turned upright, scaled, rotated and moved into place; then nearby
 //! vertices and equal faces are merged.
 
 use glam::{DMat3, DVec3};
@@ -60,7 +60,7 @@ impl Default for Pose {
     }
 }
 
-/// What is done to the scene as a whole once all models are placed.
+/// Options for the whole scene, once all models are placed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Arrangement {
     /// Vertices closer than this, in model units after scaling, are merged; see [`Mesh::weld`].
@@ -70,7 +70,7 @@ pub struct Arrangement {
 }
 
 impl Arrangement {
-    /// Combines meshes into one, each in its place. A single mesh that is neither moved nor merged stays
+    /// Combines meshes into one, each in its pose. A single mesh that is neither moved nor merged stays
     /// bit for bit the same.
     ///
     /// The rotation of a mesh is one matrix, applied once; quarter turns are exact. Vertices of

@@ -1,8 +1,8 @@
 //! Where bent faces are folded.
 //!
-//! A face whose corners do not lie in one plane is as its triangles are: folded along the diagonals
-//! that cut it. Seen from where one of the triangles beside a diagonal faces the eye and the other
-//! does not, the contour of the model runs along it, although it is not an edge.
+//! A face whose corners do not lie in one plane has the shape of its triangles: it is folded along the
+//! diagonals that cut it. If one of the triangles beside a diagonal faces the eye and the other does not, the
+//! silhouette of the model runs along it, although it is not an edge.
 //!
 //! ```text
 //!    ●───────────●

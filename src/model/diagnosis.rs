@@ -1,4 +1,4 @@
-//! Signs that a model is not as its author meant it: worth a hint, never a change.
+//! Signs that a model differs from what its author meant: worth a hint, never a change.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -12,7 +12,7 @@
 //! or boundary. A part that ends where no vertex is, as when coplanar faces overlap, counts as
 //! boundary as far as the next vertex.
 //!
-//! Everything is decided exactly on the positions as they are. Where the face beyond is out of plane
+//! Everything is decided exactly on the positions as given. Where the face beyond is out of plane
 //! by the last bit, the edge stays a boundary.
 
 use std::cmp::Ordering;

@@ -1,13 +1,13 @@
-//! How much the creases of a scene are those of a grown model. What is measured is in
+//! How organic the creases of a scene are. The measurement is in
 //! [`creases`](crate::model::creases).
 
 /// Models with a smaller share of loose creases are constructed.
 const CONSTRUCTED: f64 = 0.08;
 
-/// Models with a larger share of loose creases are grown.
+/// Models with a larger share of loose creases are organic.
 const GROWN: f64 = 0.30;
 
-/// How much the creases of a scene are those of a grown model.
+/// How much the creases of a scene are those of an organic model.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Looseness {
     /// For each model of the scene, the share of the creases' length that belongs to no closed figure.
@@ -19,7 +19,7 @@ pub struct Looseness {
 }
 
 impl Looseness {
-    /// How much each model is a grown one, from 0 (constructed) to 1.
+    /// How organic each model is, from 0 (constructed) to 1.
     pub fn of_models(&self) -> impl Iterator<Item = f64> {
         self.shares.iter().map(|&share| grown(share))
     }

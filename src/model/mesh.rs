@@ -37,12 +37,12 @@ pub struct PolygonSoup {
     pub corner_normals: Vec<[f32; 3]>,
     /// Segments that border no face, as pairs of indices into `positions`.
     pub wires: Vec<[u32; 2]>,
-    /// How far a coordinate may be from what its author meant, in model units; `None` to judge by
-    /// the digits of the positions. See [`Mesh::coordinate_error`].
+    /// How far a coordinate may be from its intended value, in model units; `None` to judge by the
+    /// digits of the positions. See [`Mesh::coordinate_error`].
     pub coordinate_error: Option<f64>,
 }
 
-/// What a run of faces has in common: object or group, material, and color.
+/// Properties that a run of faces shares: object or group, material, and color.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub struct MeshPart {
     /// Name of the object or group; empty when the file gives none.
@@ -119,7 +119,7 @@ impl PartialEq for Mesh {
     }
 }
 
-/// What was merged or left out between soup and mesh.
+/// What was merged or left out to make a mesh from a soup.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Repairs {
     /// Positions that were equal to an earlier one and became the same vertex.
@@ -177,7 +177,7 @@ pub enum MeshError {
         n_vertices: usize,
     },
     /// A merge distance that is negative, infinite or not a number.
-    #[error("the distance to merge vertices within is {distance}; it must be finite and 0 or more")]
+    #[error("the distance for merging vertices must be finite and 0 or more, not {distance}")]
     BadDistance {
         /// The distance as given, in model units.
         distance: f64,
@@ -189,7 +189,7 @@ pub enum MeshError {
 
 impl Mesh {
     /// Merges equal positions, and removes repeated corners, faces left with fewer than three, and
-    /// wires without length or given twice.
+    /// repeated or zero-length wires.
     ///
     /// Positions are equal if their coordinates are (−0 is 0). The first of them represents all,
     /// and vertices keep the order of their first appearance. Positions that nothing uses are left
@@ -310,10 +310,10 @@ impl Mesh {
         })
     }
 
-    /// Leaves out each face whose border is that of an earlier face, and says how many there were.
+    /// Leaves out each face with the same border as an earlier face, and reports how many there were.
     ///
-    /// Borders are the same when they pass the same vertices in the same cyclic order, forwards or
-    /// backwards: a wall exported from both sides, or a part given twice. Two sides of one sheet
+    /// Borders are the same when they pass the same vertices in the same cyclic order, forward or
+    /// backward: a wall exported from both sides, or a duplicated part. Two sides of one sheet
     /// then count as one face, so its rim is a boundary again. O(corners) expected.
     pub fn merge_equal_faces(self) -> (Self, Repairs) {
         let first_equal = first_equal_face(&self);
@@ -348,7 +348,7 @@ impl Mesh {
         &self.positions
     }
 
-    /// Vertex indices of all faces, one face after the other.
+    /// Vertex indices of all faces, one face after another.
     pub fn corners(&self) -> &[u32] {
         &self.corners
     }
@@ -391,7 +391,7 @@ impl Mesh {
         &self.wires
     }
 
-    /// How far a coordinate may be from what its author meant, in model units.
+    /// How far a coordinate may be from its intended value, in model units.
     ///
     /// Judged by the digits of the positions: a few units in the last decimal place when they were
     /// written with few decimals, the spacing of single precision when all of them are singles.

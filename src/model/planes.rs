@@ -1,4 +1,4 @@
-//! Triangles that go on into each other in one plane.
+//! Triangles that continue into each other in one plane.
 //!
 //! Flat sides of a model are many triangles, and whether a point of one lies in the plane of the next is
 //! a question that only exact arithmetic answers. So it is answered once for each edge.

@@ -146,7 +146,7 @@ impl Scene {
         self
     }
 
-    /// Also finds boundary edges beyond which a coplanar face goes on, as at T-junctions, so that they
+    /// Also finds boundary edges beyond which a coplanar face continues, as at T-junctions, so that they
     /// count as edges within a face. Those that are flush in part are split.
     /// Expected cost O(n log n) in boundary edges and triangles.
     #[must_use]
@@ -166,7 +166,7 @@ impl Scene {
         &self.topology
     }
 
-    /// The triangles that cover, as vertex indices, face by face; they are wound as their face is.
+    /// The triangles that hide lines, as vertex indices, face by face, with the winding of their face.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
@@ -210,13 +210,13 @@ impl Scene {
         self.bends.binary_search_by_key(&face, of).is_ok()
     }
 
-    /// What the scene takes up of all these views together: the frame of a turntable.
+    /// The extent of the scene in all these views together: the frame of a turntable.
     pub fn extent_of_views(&self, cameras: &[Camera]) -> Extent {
         cameras.iter().map(|camera| self.extent(camera)).fold(Extent::EMPTY, Extent::union)
     }
 
-    /// What of the image the scene takes up as `camera` sees it. O(vertices), in parallel; where the
-    /// near plane cuts or the view is very wide, O(edges).
+    /// The extent of the scene in the image of `camera`. O(vertices), in parallel; where the near
+    /// plane cuts or the view is very wide, O(edges).
     pub fn extent(&self, camera: &Camera) -> Extent {
         let (edges, wires) = (self.topology.edges(), self.mesh.wires());
         Extent::new(self.mesh.positions(), &[edges, wires], camera)
@@ -227,7 +227,7 @@ impl Scene {
         if self.points.is_empty() { self.mesh.positions() } else { &self.points }
     }
 
-    /// The Newell normal of each face, not normalized. Computed when first asked for; O(corners), in
+    /// The Newell normal of each face, not normalized. Computed on first use; O(corners), in
     /// parallel.
     pub fn normals(&self) -> &[DVec3] {
         computed_once::<Vec<DVec3>>(&self.normals, || {
@@ -236,9 +236,8 @@ impl Scene {
         })
     }
 
-    /// At each edge, the angle between its two faces, where one of them is turned over if they are wound
-    /// against each other; none above 0° at edges of more or fewer faces. Computed when first asked for;
-    /// O(corners), in parallel.
+    /// At each edge, the angle between its two faces, one of them flipped if their windings disagree; 0° at
+    /// edges of more or fewer faces. Computed on first use; O(corners), in parallel.
     pub fn dihedrals(&self) -> &[Dihedral] {
         computed_once::<Vec<Dihedral>>(&self.dihedrals, || {
             let normals = self.normals();
@@ -247,13 +246,13 @@ impl Scene {
         })
     }
 
-    /// How much the models are grown ones, measured when first asked for.
+    /// How organic the shapes of the models are, measured when first needed.
     pub(super) fn looseness_or(&self, measure: impl FnOnce(&Self) -> Looseness) -> &Looseness {
         computed_once(&self.looseness, || measure(self))
     }
 
     /// For each face a number that faces of equal group and material share; empty when the model
-    /// names neither. Computed when first asked for.
+    /// names neither. Computed on first use.
     pub fn groups(&self) -> &[u32] {
         computed_once::<Vec<u32>>(&self.groups, || {
             let mut first = HashMap::new();
@@ -264,8 +263,8 @@ impl Scene {
         })
     }
 
-    /// For each triangle a number; triangles with the same number lie in one plane, exactly. Others may do
-    /// so, too, where no edge connects them. Computed when first asked for; O(corners), in parallel.
+    /// For each triangle a number; triangles with the same number lie in one plane, exactly. Others may also
+    /// do so, where no edge connects them. Computed on first use; O(corners), in parallel.
     pub fn planes(&self) -> &[u32] {
         computed_once::<Vec<u32>>(&self.planes, || {
             planes(&self.mesh, &self.topology, &self.triangles, &self.triangle_faces)

@@ -1,12 +1,12 @@
-//! Which faces meet at which edges. No coordinates in here.
+//! Which faces meet at which edges, without coordinates.
 //!
 //! An *edge* is an unordered pair of vertices. Its *uses* are the times a face's border runs along
 //! it: a closed surface uses each edge twice, a border once, a fin three times.
 //!
 //! ```text
 //!     lower vertex      higher vertex
-//!          ●───────────────►●        a use that runs upwards, by the face above;
-//!          ●◄───────────────●        consistent winding makes the other run downwards
+//!          ●───────────────►●        a use that runs upward, by the face above;
+//!          ●◄───────────────●        consistent winding makes the other run downward
 //! ```
 
 use crate::model::mesh::Mesh;
@@ -29,7 +29,7 @@ pub struct Topology {
 /// One time that a face's border runs along an edge.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct EdgeUse {
-    /// The face, and in the lowest bit whether the border runs upwards.
+    /// The face, and in the lowest bit whether the border runs upward.
     packed: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Stroke optimization: nothing drawn twice, the fewest strokes, little pen-up travel.
+//! Stroke optimization: no doubled ink, the fewest strokes, little pen-up travel.
 //!
 //! ```text
 //!  lines ─► graph ─────► overlap ────► trails ───► simplify ─► order ─► lines
@@ -6,9 +6,9 @@
 //!           meet         once          straightest points      travel
 //! ```
 //!
-//! Each layer belongs to one pen and is processed on its own. [`estimate`] computes how long the result
-//! takes on a machine. Memory grows with the points of the largest layer: a line of a million segments
-//! takes 210 MB in all.
+//! Each layer belongs to one pen and is processed separately. [`estimate`] computes how long the result takes
+//! on a machine. Memory grows with the points of the largest layer: a line of a million segments takes 210 MB
+//! in all.
 
 use std::time::Duration;
 
@@ -46,14 +46,13 @@ pub use near_overlap::{NearOverlap, near_overlap};
 mod split;
 pub use split::split_by_distance;
 
-/// Joints of strokes in a file are this close, unless set otherwise: coordinates with three decimals
-/// put a point that two strokes share up to two micrometers apart, along an axis. The last picometer
-/// is for binary numbers, which only come near to decimal ones. A joint is the middle of the box of
-/// its points, whose diagonal is no longer than this: so ink moves by half of it, a micrometer.
+/// The default join tolerance for strokes from a file: coordinates with three decimals put a point that two
+/// strokes share up to two micrometers apart along an axis. The last picometer is for binary numbers, which
+/// only approximate decimal ones. A joint is the center of the box of its points, whose diagonal is at most
+/// this long, so ink moves by at most half of it, a micrometer.
 pub const JOIN_TOLERANCE_MM: f64 = 0.002_000_000_001;
 
-/// Ink this close to other ink lies on it in drawings, unless set otherwise: half of the last digit
-/// that is written.
+/// The default overlap tolerance for drawings: half of the last digit written.
 pub const OVERLAP_MM: f64 = 0.0005;
 
 /// How long to search for a stroke order with little pen-up travel.
@@ -65,7 +64,7 @@ pub enum Effort {
     Fast,
     /// The same, then a number of random changes that grows with the number of strokes.
     Best,
-    /// The same for as long as this: the one effort whose outcome depends on the clock.
+    /// The same for this long: the only effort whose result depends on the clock.
     Within(Duration),
 }
 
@@ -91,16 +90,16 @@ impl Effort {
 /// What to do with a drawing's strokes; lengths in page millimeters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OptimizeOptions {
-    /// Points at most this far apart are one joint; zero joins equal points only, `None` joins
-    /// nothing and keeps what is drawn twice.
+    /// Points at most this far apart are one joint; zero joins equal points only, and `None` joins nothing
+    /// and keeps doubled ink.
     pub join_tolerance_mm: Option<f64>,
     /// Ink that runs along other ink at most this far from it is drawn once; zero finds exactly
     /// collinear ink only.
     pub overlap_mm: f64,
     /// How far points left out may be from the stroke; zero leaves out exactly collinear ones.
     pub simplify_mm: f64,
-    /// Strokes shorter than this are dropped, and those whose ends are nearer to each other than
-    /// this are closed. Zero does neither.
+    /// Strokes shorter than this are dropped, and strokes whose ends are closer than this are closed. Zero
+    /// does neither.
     pub shortest_mm: f64,
     /// Keep the strokes of a layer where joining would only cut them into more, to save less than
     /// [`HARDLY_ANY_INK`] of the ink.
@@ -109,12 +108,12 @@ pub struct OptimizeOptions {
     pub effort: Effort,
 }
 
-/// The share of the ink for which no stroke need be cut.
+/// The share of the ink for which it is not worth cutting a stroke.
 pub const HARDLY_ANY_INK: f64 = 0.01;
 
 impl OptimizeOptions {
-    /// For drawings that were just made: joints are equal points, ink that deviates by less than is
-    /// written overlaps, and strokes that were joined with care are not cut for nothing.
+    /// For new drawings: joints are equal points, ink overlaps if it deviates by less than the digits
+    /// written, and carefully joined strokes are not cut for nothing.
     pub fn for_drawings() -> Self {
         Self {
             join_tolerance_mm: Some(0.0),
@@ -148,7 +147,7 @@ impl OptimizeOptions {
         Self { simplify_mm, ..self }
     }
 
-    /// Whether strokes stay as they are, but for points on straight lines.
+    /// Whether strokes stay unchanged, except for points on straight lines.
     pub fn is_idle(&self) -> bool {
         self.join_tolerance_mm.is_none()
             && self.effort == Effort::None
@@ -159,7 +158,7 @@ impl OptimizeOptions {
 
 impl Default for OptimizeOptions {
     /// For strokes from a file: joints are points that are near, and only exactly collinear ink
-    /// overlaps, since rounded coordinates put distinct lines near each other too.
+    /// overlaps, since rounded coordinates can also put distinct lines close together.
     fn default() -> Self {
         Self {
             join_tolerance_mm: Some(JOIN_TOLERANCE_MM),
@@ -178,7 +177,7 @@ pub fn optimize(plot: &Plot, options: &OptimizeOptions) -> (Plot, u64) {
     optimize_watched(plot, options, &mut |_| ())
 }
 
-/// As [`optimize`], and reports the share of the work that is done to `watch` as it grows from 0 to 1.
+/// Like [`optimize`], and reports the share of the work that is done to `watch` as it grows from 0 to 1.
 pub fn optimize_watched(
     plot: &Plot,
     options: &OptimizeOptions,
@@ -203,7 +202,7 @@ pub fn optimize_watched(
     (plot.with_layers(layers), n_changes)
 }
 
-/// Takes the share of the work that is done, from 0 to 1.
+/// Receives the share of the work that is done, from 0 to 1.
 pub type Watch<'a> = dyn FnMut(f64) + 'a;
 
 /// Share of the work that is done when strokes are joined and are yet to be ordered.
@@ -269,7 +268,7 @@ fn degrees(graph: &Graph) -> Vec<u32> {
     degrees
 }
 
-/// So many strokes are simplified at a time, since all of them may take up much memory.
+/// This many strokes are simplified at a time, to limit memory.
 const TOGETHER: usize = 1024;
 
 /// Strokes with fewer points, without the shortest; joints are kept.

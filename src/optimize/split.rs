@@ -1,4 +1,4 @@
-//! Layers cut where a pen has drawn far enough: to dip a brush again, or to sharpen a pencil.
+//! Layers split after a given drawing distance: to dip a brush again, or to sharpen a pencil.
 
 use glam::DVec2;
 

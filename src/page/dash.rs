@@ -1,4 +1,4 @@
-//! Dashed lines as real segments, since plotters know no dash patterns.
+//! Dashed lines as real segments, since plotters have no dash patterns.
 //!
 //! ```text
 //!   end              corner
@@ -17,7 +17,7 @@ const CORNER_DEG: f64 = 30.0;
 /// A visible line ends where a hidden one begins if they are this close, in millimeters, …
 const SAME_END_MM: f64 = 0.05;
 
-/// … and goes on into it if the turn is no more than this, in degrees.
+/// … and continues into it if the turn is at most this, in degrees.
 const STRAIGHT_DEG: f64 = 15.0;
 
 /// Closed lines without corners have at least this many gaps.
@@ -40,10 +40,10 @@ impl Dash {
         Self { dash_mm: 12.0 * width_mm, gap_mm: 3.0 * width_mm }
     }
 
-    /// Hands the dashes along a polyline in millimeters to `emit`.
+    /// Passes the dashes along a polyline in millimeters to `emit`.
     ///
-    /// `goes_on` says whether a visible line goes on from the first and from the last point: there the
-    /// stroke has a gap, so that one sees where the line is hidden.
+    /// `goes_on` says whether a visible line continues from the first and from the last point: there the
+    /// stroke has a gap, which shows where the line becomes hidden.
     pub(super) fn for_each_dash(
         &self,
         points: &[DVec2],
@@ -185,7 +185,7 @@ fn cut(points: &[DVec2], along: &[f64], from: f64, to: f64, piece: &mut Vec<DVec
     piece.push(at(along.partition_point(|&a| a < to).clamp(1, points.len() - 1) - 1, to));
 }
 
-/// Where visible lines end, and in which direction they run out.
+/// Where visible lines end, and in which direction.
 #[derive(Default)]
 pub(super) struct VisibleEnds {
     cells: HashMap<[i64; 2], Vec<(DVec2, DVec2)>>,
@@ -204,7 +204,7 @@ impl VisibleEnds {
         }
     }
 
-    /// Whether a visible line goes on into a stroke that begins at `first` towards `second`.
+    /// Whether a visible line continues into a stroke that begins at `first` toward `second`.
     pub(super) fn go_on(&self, first: DVec2, second: DVec2) -> bool {
         let direction = (second - first).normalize_or_zero();
         let cos_straight = libm::cos(STRAIGHT_DEG.to_radians());

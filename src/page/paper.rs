@@ -1,4 +1,4 @@
-//! Sizes of paper, and lengths with units.
+//! Paper sizes, and lengths with units.
 
 use std::str::FromStr;
 
@@ -13,7 +13,7 @@ pub struct Paper {
     pub width_mm: f64,
     /// From top to bottom.
     pub height_mm: f64,
-    /// Name of the size; `None` for one given in numbers, which is never turned unasked.
+    /// Name of the size; `None` for a size given in numbers, which is not turned to suit the drawing.
     pub name: Option<&'static str>,
 }
 
@@ -36,13 +36,13 @@ const NAMED: [(&str, f64, f64); 10] = [
 pub enum PaperError {
     /// Neither a name nor two lengths.
     #[error(
-        "`{0}` is not a paper size: give a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm"
+        "`{0}` is not a paper size: use a0 to a6, letter, legal, tabloid, or WIDTHxHEIGHT in mm"
     )]
     Unknown(String),
     /// Not a number with a unit.
-    #[error("`{0}` is not a length: give a number, and mm, cm or in if it is not in millimeters")]
+    #[error("`{0}` is not a length: use a number, with mm, cm or in unless it is in millimeters")]
     Length(String),
-    /// Zero, negative, or beyond any paper.
+    /// Zero, negative, or larger than any paper.
     #[error("`{0}`: width and height must be above 0 and at most 100 m")]
     Size(String),
 }
@@ -68,7 +68,7 @@ impl Paper {
         Self { width_mm, height_mm, name: None }
     }
 
-    /// The sheet as it is to lie.
+    /// The sheet in the requested or suitable orientation.
     pub(super) fn turned(self, asked: Option<Orientation>, suits: Orientation) -> Self {
         let orientation = match (asked, self.name) {
             (Some(orientation), _) => orientation,

@@ -1,4 +1,4 @@
-//! Which pen draws what.
+//! Which pen draws which strokes.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use crate::strokes::{GridFamily, HiddenLines, Stroke, StrokeKind, Strokes, Surfa
 
 use super::{Dash, PlotOptions};
 
-/// Strokes that a pen can be given for.
+/// Strokes that can have their own pen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PenRole {
     /// Visible strokes of all kinds without their own rule.
@@ -50,9 +50,9 @@ impl PenRole {
         }
     }
 
-    /// What draws a stroke, where there are rules for what `has_rule` is true for: the most special
-    /// one, and for visible strokes the outline before the underside before the kind of a sheet, the kind,
-    /// and the sheet. A family is more special than all grid lines, and index lines are level curves.
+    /// The role that draws a stroke, among those for which `has_rule` is true: the most specific one, and for
+    /// visible strokes the outline before the underside before the kind of a sheet, the kind, and the sheet.
+    /// A family is more specific than all grid lines, and index lines are level curves.
     fn of(stroke: &Stroke, has_rule: impl Fn(Self) -> bool) -> Self {
         if stroke.qi > 0 {
             let level = Self::HiddenLevel(stroke.qi);
@@ -87,8 +87,8 @@ impl PenRole {
     }
 }
 
-/// A pen and what it draws. Rules with the same number are about one pen: the first one says what
-/// it is like and names its layer.
+/// A pen and the strokes that it draws. Rules with the same number share one pen: the first one describes it
+/// and names its layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PenRule {
     /// What it draws.
@@ -102,7 +102,7 @@ pub struct PenRule {
 }
 
 impl PenRule {
-    /// What pen `number`, 1 or more, draws; a fine pen in the default color of its number.
+    /// A rule for pen `number`, 1 or more: a fine pen in the default color of its number.
     ///
     /// ```
     /// use hiddenline::{PenRole, PenRule, StrokeKind};
@@ -117,7 +117,7 @@ impl PenRule {
         Self { drawn, number, pen, controls: LayerControls::default() }
     }
 
-    /// The width of its line, in millimeters.
+    /// Its line width, in millimeters.
     #[must_use]
     pub fn width_mm(mut self, width_mm: f64) -> Self {
         self.pen.width_mm = width_mm;
@@ -135,7 +135,7 @@ impl PenRule {
 /// Instructions for AxiDraw's software in the label of a layer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LayerControls {
-    /// Whether it pauses before the layer, to change the pen.
+    /// Whether to pause before the layer, to change the pen.
     pub pause: bool,
     /// Speed with the pen down, in percent from 1 to 110.
     pub speed: Option<u32>,
@@ -163,7 +163,7 @@ impl LayerControls {
     }
 }
 
-/// Colors of pens that are given without one, by number.
+/// Default colors of pens, by number.
 const PALETTE: [&str; 8] =
     ["#000000", "#808080", "#c00000", "#0000c0", "#008000", "#c06000", "#8000a0", "#0090a0"];
 
@@ -183,7 +183,7 @@ const INDEX_COLOR: &str = "#080808";
 /// Blue: easy to distinguish from the black of upper sides, for people and for programs.
 const UNDERSIDE_COLOR: &str = "#0000c0";
 
-/// The color of pen `number`, counted from 1, unless it is given another one.
+/// The default color of pen `number`, counted from 1.
 pub fn default_pen_color(number: u32) -> &'static str {
     PALETTE[number.saturating_sub(1) as usize % PALETTE.len()]
 }
@@ -198,8 +198,8 @@ pub fn pen_of(rules: &[PenRule], width_mm: f64, stroke: &Stroke) -> Pen {
     ruled(role).and_then(|rule| first(rule.number)).map_or_else(usual, |rule| rule.pen.clone())
 }
 
-/// Those of `roles` that draw none of `strokes`, because there are none of that kind or because
-/// others of `roles` are more special.
+/// Those of `roles` that draw none of `strokes`, because there are none of that kind or because others of
+/// `roles` are more specific.
 pub fn idle_pens(roles: &[PenRole], strokes: &Strokes) -> Vec<PenRole> {
     let mut idle = roles.to_vec();
     for stroke in strokes.iter() {
@@ -212,7 +212,7 @@ pub fn idle_pens(roles: &[PenRole], strokes: &Strokes) -> Vec<PenRole> {
     idle
 }
 
-/// How wide lines are that end a surface in the image.
+/// Line widths for lines that end a surface in the image.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LineWeights {
     /// As wide as all visible lines.
@@ -225,13 +225,13 @@ pub enum LineWeights {
 }
 
 impl LineWeights {
-    /// The lines to draw, with the outline where it has a width of its own.
+    /// The lines to draw, with the outline where it has its own width.
     #[must_use]
     pub fn lines(self, lines: LineSelection) -> LineSelection {
         if self == Self::Plain { lines } else { lines.with_outline() }
     }
 
-    /// Whether kinds of line have pens of their own.
+    /// Whether kinds of lines have their own pens.
     pub fn tells_kinds_apart(self) -> bool {
         self == Self::Bold
     }
@@ -249,9 +249,9 @@ impl LineWeights {
     }
 }
 
-/// Adds the usual pens of a drawing of models to `rules`, unless these have some: one twice as wide
-/// for the outline, if other lines are drawn too, and a gray one for each level of hidden lines, the
-/// paler the more often they are covered.
+/// Adds the usual pens of a drawing of models to `rules`, unless these have some: one twice as wide for the
+/// outline, if other lines are drawn too, and a gray one for each level of hidden lines, paler the more faces
+/// hide them.
 pub fn with_line_pens(
     mut rules: Vec<PenRule>,
     lines: LineSelection,
@@ -270,14 +270,14 @@ pub fn with_line_pens(
     rules
 }
 
-/// Adds the usual pen of hatching to `rules`, unless these have one: as wide as the others, on a layer of
-/// its own.
+/// Adds the usual pen of hatching to `rules`, unless these have one: as wide as the others, on a separate
+/// layer.
 pub fn with_hatch_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
     add_pen(&mut rules, PenRole::Kind(StrokeKind::Hatch), width_mm, HATCH_COLOR.into());
     rules
 }
 
-/// The width of the pen that hatches by some rules, in millimeters; that of the other pens unless they say.
+/// The width of the pen that hatches according to `rules`, in millimeters; by default that of the other pens.
 pub fn hatch_width_mm(rules: &[PenRule], width_mm: f64) -> f64 {
     let hatch = PenRole::Kind(StrokeKind::Hatch);
     let rule = rules.iter().rev().find(|rule| rule.drawn == hatch);
@@ -296,8 +296,8 @@ pub fn with_index_pen(mut rules: Vec<PenRule>, width_mm: f64) -> Vec<PenRule> {
     rules
 }
 
-/// Adds a pen for each of several sheets to `rules`, unless these have one: that of the visible lines for
-/// the first sheet, and others as wide in the colors of their numbers.
+/// Adds a pen for each of several sheets to `rules`, unless these have one: the pen of visible lines for the
+/// first sheet, and pens of the same width in the colors of their numbers for the others.
 pub fn with_sheet_pens(mut rules: Vec<PenRule>, n_sheets: usize, width_mm: f64) -> Vec<PenRule> {
     let n_sheets = u16::try_from(n_sheets).unwrap_or(u16::MAX);
     if n_sheets < 2 {
@@ -328,7 +328,7 @@ pub fn with_sheet_pens(mut rules: Vec<PenRule>, n_sheets: usize, width_mm: f64) 
     rules
 }
 
-/// Whether several sheets have pens of their own: with a legend, or where pens are given for some lines.
+/// Whether several sheets have their own pens: with a legend, or if there are pens for some of their lines.
 pub fn tells_sheets_apart(rules: &[PenRule], n_sheets: usize, has_legend: bool) -> bool {
     let is_for_all = |role| matches!(role, PenRole::Visible | PenRole::Hidden);
     n_sheets > 1 && (has_legend || rules.iter().any(|rule| !is_for_all(rule.drawn)))
@@ -430,7 +430,7 @@ impl Holder {
         self.layers.len() - 1
     }
 
-    /// Where a stroke goes.
+    /// The layer of a stroke.
     pub(super) fn layer(&mut self, stroke: &Stroke) -> &mut Layer {
         let ruled = |drawn| self.rules.iter().rev().find(|rule| rule.0 == drawn).map(|rule| rule.1);
         let role = PenRole::of(stroke, |role| ruled(role).is_some());
@@ -439,7 +439,7 @@ impl Holder {
         &mut self.layers[layer]
     }
 
-    /// The layers by number, without those that nobody asked for and nothing is drawn on.
+    /// The layers by number, without empty layers that were not requested.
     pub(super) fn into_layers(self) -> Vec<Layer> {
         let kept = self.layers.into_iter().zip(self.fixed);
         let kept = kept.filter(|(layer, fixed)| *fixed || !layer.lines.is_empty());

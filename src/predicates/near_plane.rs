@@ -1,4 +1,4 @@
-//! What the near plane keeps of segments and triangles.
+//! The parts of segments and triangles beyond the near plane.
 //!
 //! ```text
 //!      eye ◁──────┊──●────────●      A segment is cut where it crosses the plane. Of a triangle that
@@ -8,7 +8,7 @@
 
 use super::{Cut, CutPlane, Sight, Sign};
 
-/// What the near plane keeps of a triangle.
+/// The part of a triangle beyond the near plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
     /// All of it.
@@ -33,7 +33,7 @@ impl Sight<'_> {
         }
     }
 
-    /// What the near plane keeps of a triangle, decided exactly. A triangle in the plane itself is kept.
+    /// The part of a triangle beyond the near plane, decided exactly. A triangle in the plane itself is kept.
     #[inline]
     pub fn kept_of_triangle(&self, corners: [u32; 3]) -> Kept {
         let signs = corners.map(|corner| self.near_distance(corner).1);

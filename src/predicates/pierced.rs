@@ -90,7 +90,7 @@ enum Truth {
     Rounded,
     /// Here.
     Known(Homogeneous),
-    /// They are computed when asked for, which is rare: where an edge, by its ends, meets a plane.
+    /// They are computed when requested, which is rare: where an edge, by its ends, meets a plane.
     OnPlane([DVec3; 2], FreePlane),
 }
 

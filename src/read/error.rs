@@ -11,7 +11,7 @@ use crate::model::mesh::MeshError;
 /// Displays as one line, `file:line: what is wrong; how to fix it`.
 #[derive(Debug, Error)]
 pub struct ReadError {
-    /// Name of the file as it was given.
+    /// File name as given.
     pub name: String,
     /// Line in the file, counted from 1; `None` where no line is known.
     pub line: Option<usize>,
@@ -48,19 +48,19 @@ pub enum Fault {
     /// A web page in place of a model.
     #[error("this is a web page, not a model; download the file itself")]
     WebPage,
-    /// What Git Large File Storage leaves in place of a file.
+    /// A Git Large File Storage pointer in place of a file.
     #[error("this is a Git LFS pointer, not a model; fetch the file with `git lfs pull`")]
     LfsPointer,
     /// A STEP file, which holds curved surfaces.
     #[error(
-        "STEP files are not read; make a GLB of it in FreeCAD, or in Python (pip install cascadio): \
-         cascadio.step_to_glb(\"part.step\", \"part.glb\", 0.05, 0.2)"
+        "STEP files are not supported; convert them to GLB in FreeCAD, or in Python (pip install \
+         cascadio): cascadio.step_to_glb(\"part.step\", \"part.glb\", 0.05, 0.2)"
     )]
     Step,
     /// Zero bytes.
     #[error("the file is empty; export the model again")]
     Empty,
-    /// Nothing that could be drawn is left.
+    /// Nothing to draw is left.
     #[error("{}", no_faces(*.vertices, *.degenerate))]
     NoFaces {
         /// Vertices that were read.
@@ -69,7 +69,7 @@ pub enum Fault {
         degenerate: usize,
     },
     /// A file in a text format holds bytes that are not text, and no face.
-    #[error("this is not {0} text; check the file, or give its format")]
+    #[error("this is not {0} text; check the file, or specify its format")]
     NotText(&'static str),
     /// A word that should be a number.
     #[error("`{0}` is not a decimal number; correct it or export the model again")]
@@ -99,7 +99,7 @@ pub enum Fault {
     #[error("`{0}` is not the number of a vertex; correct it or export the model again")]
     BadIndex(String),
     /// Vertex 0 in a format that counts from 1.
-    #[error("there is no vertex 0, OBJ counts from 1; correct it or export the model again")]
+    #[error("there is no vertex 0; OBJ counts from 1; correct it or export the model again")]
     ZeroIndex,
     /// A face uses a vertex that does not exist.
     #[error("{}", missing_vertex(.index, *.vertices))]
@@ -120,7 +120,7 @@ pub enum Fault {
     /// A word that the format does not allow here.
     #[error("{expected} expected, `{found}` found; correct the line or export the model again")]
     Unexpected {
-        /// What the format asks for.
+        /// What the format expects.
         expected: &'static str,
         /// What is there.
         found: String,
@@ -133,33 +133,33 @@ pub enum Fault {
         /// What to do instead.
         remedy: &'static str,
     },
-    /// The format is left out of this build.
+    /// The format is not in this build.
     #[error(transparent)]
     FeatureOff(#[from] FeatureOff),
     /// A message of a parsing library.
     #[error("{0}; correct the file or export the model again")]
     Parser(String),
-    /// The faces do not make a mesh.
+    /// The faces do not form a valid mesh.
     #[error("{0}; export the model again")]
     Mesh(#[from] MeshError),
     /// The JSON of a glTF file, or what it refers to, is wrong.
     #[error("this is not valid glTF 2.0: {0}; export the model again")]
     Gltf(String),
-    /// A glTF file demands an extension that is not supported; compression, mostly.
+    /// A glTF file requires an unsupported extension, usually compression.
     #[error(
         "it requires the glTF extension {0}; write it without: \
          gltf-transform copy model.glb plain.glb (npm install --global @gltf-transform/cli)"
     )]
     RequiredExtension(String),
-    /// A glTF buffer lies elsewhere than in the model's folder.
+    /// A glTF buffer is not in the model's folder.
     #[error(
-        "its buffer `{0}` is not in the model's folder, and no other place is read; \
-         put it there, or export the model as .glb"
+        "its buffer `{0}` is not in the model's folder, and no other folder is read; put it \
+         there, or export the model as .glb"
     )]
     BufferElsewhere(String),
     /// A glTF buffer is a file, but the model came without a folder, as from standard input.
     #[error(
-        "its buffer `{0}` is a file of its own; give the model by its name, or export it as .glb"
+        "its buffer `{0}` is a separate file; pass the model by file name, or export it as .glb"
     )]
     BufferWithoutFolder(String),
     /// A glTF buffer's file cannot be read.
@@ -206,13 +206,13 @@ fn missing_vertex(index: &str, vertices: usize) -> String {
     format!("a face uses vertex {index}, but {there_are}; correct it or export the model again")
 }
 
-/// A format that this build leaves out.
+/// A format that is not in this build.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("this build cannot read {format}; build it with the feature `{feature}`")]
 pub struct FeatureOff {
     /// The format's usual name.
     pub format: &'static str,
-    /// The feature of this crate that brings it.
+    /// The feature of this crate that adds it.
     pub feature: &'static str,
 }
 

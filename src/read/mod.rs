@@ -4,14 +4,14 @@
 //!  bytes ─► decode ─► obj │ stl │ ply │ off │ gltf │ three_mf ─► PolygonSoup ─► Mesh::new ─► Model
 //! ```
 //!
-//! Positions are the doubles nearest to what the file says; single precision in binary files is
+//! Positions are the doubles nearest to the numbers in the file; single precision in binary files is
 //! widened, which is exact. Polygons stay whole. Polylines become wires. Texture coordinates are
 //! ignored, so errors in them do not matter.
 //!
-//! A reader refuses a file where geometry is lost (a bad or missing index, a number in use that is
-//! not finite, a wrong count, an early end) and where neither a face nor a wire is left. Records
-//! that it does not know are skipped with a [`Warning`]. Memory stays within a small multiple of the
-//! file's size, whatever counts a header claims.
+//! A reader refuses a file where geometry is lost (a bad or missing index, a number in use that is not
+//! finite, a wrong count, an early end) and where neither a face nor a wire is left. Unknown records are
+//! skipped with a [`Warning`]. Memory stays within a small multiple of the file's size, whatever counts a
+//! header claims.
 
 mod error;
 #[cfg(feature = "gltf")]
@@ -142,7 +142,7 @@ impl ModelFormat {
     }
 }
 
-/// A model as read: its mesh, and what was changed or left out on the way.
+/// A model as read: its mesh, and what was changed or left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// The polygons.
@@ -151,7 +151,7 @@ pub struct Model {
     pub format: ModelFormat,
     /// What was merged and left out.
     pub repairs: Repairs,
-    /// Millimeters in a model unit, where the format says so: 1000 in glTF, as written in 3MF.
+    /// Millimeters per model unit, where the format defines it: 1000 in glTF, as written in 3MF.
     pub unit_mm: Option<f64>,
     /// What was skipped, and other remarks; a few at most.
     pub warnings: Vec<Warning>,
@@ -159,7 +159,7 @@ pub struct Model {
 
 /// Reads a model file; `-` is standard input.
 ///
-/// Without `format`, the extension decides, or else the content.
+/// Without `format`, the format follows from the extension, or else from the content.
 ///
 /// # Errors
 /// The file cannot be opened or read, or [`read_bytes`] fails.
@@ -179,7 +179,7 @@ pub fn read_file(path: &Path, format: Option<ModelFormat>) -> Result<Model, Read
     }
 }
 
-/// Reads a model from memory; `name` is for messages, and for its extension.
+/// Reads a model from memory; `name` is for messages, and its extension gives the format.
 ///
 /// # Errors
 /// The format is unknown, the content is faulty (see [`Fault`]), or neither a face nor a wire is left.
@@ -316,7 +316,7 @@ fn read_model(
     Ok(Model { mesh, format, repairs, unit_mm: parsed.unit_mm, warnings })
 }
 
-/// Refuses files that are given by mistake: web pages, Git LFS pointers, STEP files.
+/// Refuses files passed by mistake: web pages, Git LFS pointers, STEP files.
 fn refuse_other_files(path: &Path, bytes: &[u8], format: Option<ModelFormat>) -> Result<(), Fault> {
     let text = text::decode(&bytes[..bytes.len().min(1 << 12)]);
     let text = text.trim_ascii_start();

@@ -68,7 +68,7 @@ fn diffuse(words: &mut Words<'_>) -> Result<[u8; 3], String> {
     while let Some(word) = words.next_on_line().filter(|word| word.first() != Some(&b'#')) {
         if matches!(word, b"xyz" | b"spectral") {
             return Err(format!(
-                "`Kd {}` is not supported; give Kd as red, green, blue",
+                "`Kd {}` is not supported; write Kd as red, green, blue",
                 name(word)
             ));
         }
@@ -126,7 +126,7 @@ mod tests {
             ("Kd", "three numbers expected for Kd, 0 found"),
             ("Kd a b c", "`a` in Kd is not a number"),
             ("Kd 1 nan 0", "`nan` in Kd is not a number"),
-            ("Kd spectral x.rfl", "`Kd spectral` is not supported; give Kd as red, green, blue"),
+            ("Kd spectral x.rfl", "`Kd spectral` is not supported; write Kd as red, green, blue"),
         ] {
             let text = format!("newmtl a\nKd 1 0 0\nnewmtl odd\n{line}\nnewmtl b\nKd 0 0 1\n");
             let file = read_materials(text.as_bytes());

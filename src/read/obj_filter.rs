@@ -341,7 +341,7 @@ fn copy_face(
     Ok(())
 }
 
-/// Reads a `vn` record. One that is not three numbers is no normal, which costs the faces nothing.
+/// Reads a `vn` record. One that is not three numbers is not a normal, which costs the faces nothing.
 fn read_normal(records: &mut Records<'_>, normals: &mut Normals) {
     let mut next = || records.word(false).and_then(|word| number(word).ok());
     let [x, y, z] = [next(), next(), next()];

@@ -9,7 +9,7 @@ use crate::model::mesh::MeshPart;
 pub(super) struct PartTable {
     parts: Vec<MeshPart>,
     indices: HashMap<MeshPart, u32>,
-    /// The part asked for last, since faces of one part mostly follow each other.
+    /// The part requested last, since faces of one part mostly follow each other.
     last: Option<u32>,
 }
 

@@ -221,7 +221,7 @@ fn read_solid(words: &mut Words<'_>, parsed: &mut Parsed) -> Result<(), Located>
     loop {
         let start = words.clone();
         let Some(word) = words.next() else {
-            let what = "`endsolid` is missing at the end; what is there is read";
+            let what = "`endsolid` is missing at the end; the facets found are read";
             parsed.notices.push(Notice::Irregular { line: words.line(), what });
             return Ok(());
         };
@@ -248,7 +248,7 @@ fn read_solid(words: &mut Words<'_>, parsed: &mut Parsed) -> Result<(), Located>
             return Ok(());
         }
         if word.eq_ignore_ascii_case(b"solid") {
-            let what = "`endsolid` is missing before `solid`; what is there is read";
+            let what = "`endsolid` is missing before `solid`; the facets found are read";
             parsed.notices.push(Notice::Irregular { line, what });
             *words = start;
             return Ok(());

@@ -4,12 +4,12 @@ use std::fmt;
 
 use super::error::write_one_line;
 
-/// A notice about a model, with the name of its file.
+/// A notice about a model, with its file name.
 ///
 /// Displays as one line, `file: what`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// Name of the file as it was given.
+    /// File name as given.
     pub name: String,
     /// What happened.
     pub notice: Notice,
@@ -44,10 +44,10 @@ pub enum Notice {
     Irregular {
         /// Line of it.
         line: usize,
-        /// What was found, and what became of it.
+        /// What was found, and how it was handled.
         what: &'static str,
     },
-    /// A count in a header that disagrees with the size of the file, so that all of it is read.
+    /// A count in a header that disagrees with the size of the file; everything in the file is read.
     WrongCount {
         /// The count in the header.
         stated: u64,
@@ -56,7 +56,7 @@ pub enum Notice {
         /// What is counted.
         element: &'static str,
     },
-    /// Records of one kind that the reader does not know.
+    /// Records of one unknown kind.
     UnknownRecord {
         /// Their first word.
         keyword: String,
@@ -65,7 +65,7 @@ pub enum Notice {
         /// Line of the first.
         first_line: usize,
     },
-    /// Records of yet more unknown kinds.
+    /// Records of further unknown kinds.
     OtherUnknownRecords {
         /// How many.
         count: usize,

@@ -28,7 +28,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         };
         let found = self.ids.get(id).copied().filter(|n| n.tag_name().name() == "clipPath");
         let Some(clip) = found else {
-            self.warn_at(node, &format!("there is no <clipPath> called {id:?}"));
+            self.warn_at(node, &format!("no <clipPath> has the id {id:?}"));
             return Ok(None);
         };
         if self.open_clips.contains(&clip.id()) {

@@ -97,7 +97,9 @@ pub enum SvgError {
     #[error("entities of the document type expand to too much text; save the file without them")]
     Entities,
     /// Too deep, or a `<use>` that shows itself.
-    #[error("line {line}: elements are nested more than {MAX_DEPTH} deep, or <use> shows itself")]
+    #[error(
+        "line {line}: elements are nested more than {MAX_DEPTH} deep, or <use> refers to itself"
+    )]
     TooDeep {
         /// Line of the file.
         line: u32,

@@ -321,7 +321,10 @@ impl<'a, 'input> Reader<'a, 'input> {
             Some(child) => self.read_element(child, context),
             None => {
                 if node.first_element_child().is_some() {
-                    self.warn_at(node, "no child of <switch> meets its conditions; none is drawn");
+                    self.warn_at(
+                        node,
+                        "no child of <switch> meets its conditions, so none is drawn",
+                    );
                 }
                 Ok(())
             }
@@ -354,7 +357,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         const XLINK: &str = "http://www.w3.org/1999/xlink";
         let href = node.attribute("href").or(node.attribute((XLINK, "href"))).unwrap_or_default();
         let Some(&shown) = href.strip_prefix('#').and_then(|id| self.ids.get(id)) else {
-            self.warnings.insert(format!("<use> of {href:?}: there is no such element here"));
+            self.warnings.insert(format!("<use> of {href:?}: no such element in this file"));
             return Ok(());
         };
         let [width, height] = context.viewport;

@@ -148,7 +148,7 @@ impl ShapeOutline {
             self.fault.get_or_insert(ShapeFault::Coordinate);
             return;
         }
-        // Checked before the arc is cut into as many curves as its size asks for.
+        // Checked before the arc is cut into as many curves as its size requires.
         let size = arc.radii.x.abs().max(arc.radii.y.abs());
         let reach = (arc.to - arc.from).hypot() * self.to_page.determinant().abs().sqrt();
         if reach > MAX_COORDINATE_MM || reach.is_nan() {

@@ -5,8 +5,8 @@
 //!                   pieces      a color for each face          nearest    areas, one layer per ink
 //! ```
 //!
-//! Shading is flat: a face has one color, by its Newell normal. Adjacent pieces of one face make one area.
-//! With inks, adjacent pieces of one ink make one area, and areas never overlap: what is painted over is
+//! Shading is flat: a face has one color, by its Newell normal. Adjacent fragments of one face make one area.
+//! With inks, adjacent fragments of one ink make one area, and areas never overlap: areas painted over are
 //! subtracted first.
 
 use std::collections::BTreeMap;
@@ -27,11 +27,11 @@ use crate::shading::light::{
     DEFAULT_PAINT, FARTHEST, Light, LightSource, number_color, order_color, parts, to_bytes,
 };
 
-/// Most inks.
+/// The maximum number of inks.
 pub const MOST_INKS: usize = 64;
 
-/// Width of the outline that closes seams, in millimeters, unless set otherwise: thinner than any pen,
-/// and wide enough where screens and printers smooth borders.
+/// The default width of the outline that closes seams, in millimeters: thinner than any pen, and wide enough
+/// where screens and printers antialias edges.
 pub const DEFAULT_SEAM_MM: f64 = 0.05;
 
 /// What the colors show.
@@ -40,11 +40,11 @@ pub enum Coloring {
     /// Faces in the light.
     #[default]
     Shaded,
-    /// The order of painting: blue first, then green, red last.
+    /// The paint order: blue first, then green, red last.
     Order,
     /// How near faces are: the nearest white, the farthest dark.
     Depth,
-    /// The pieces that faces were split into, a color for each.
+    /// The fragments that faces were split into, a color for each.
     Splits,
 }
 
@@ -103,7 +103,7 @@ impl FillOptions {
         Self { engine, ..self }
     }
 
-    /// Only these inks, each on its own layer.
+    /// Uses only these inks, each on its own layer.
     #[must_use]
     pub fn palette(self, palette: Palette) -> Self {
         Self { palette: Some(palette), ..self }
@@ -137,7 +137,7 @@ impl FillOptions {
 /// Why faces cannot be filled.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FillError {
-    /// The engine cannot take the scene.
+    /// The engine cannot handle the scene.
     #[error(transparent)]
     Engine(#[from] FaceError),
     /// A palette without inks or with too many.
@@ -160,7 +160,7 @@ pub struct Filled {
     pub engine: FaceEngine,
     /// Whether no area overlaps another.
     pub is_disjoint: bool,
-    /// How many pieces the engine made.
+    /// How many fragments the engine made.
     pub n_pieces: usize,
     /// How much work the engine did, if it found the regions.
     pub work: Option<FaceWork>,
@@ -192,7 +192,7 @@ pub fn fill_prepared(
 }
 
 impl FillOptions {
-    /// Checks that these go together.
+    /// Checks that the options can be combined.
     ///
     /// # Errors
     /// [`FillError::Inks`], [`FillError::DebugInks`].
@@ -209,7 +209,7 @@ impl FillOptions {
     }
 }
 
-/// Fills regions that are known already.
+/// Fills known regions.
 pub fn fill_painting(
     scene: &Scene,
     camera: &Camera,

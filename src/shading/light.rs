@@ -7,24 +7,24 @@
 //!            ●─┴────
 //! ```
 //!
-//! Lambert's law. The light is far away, like the sun, or a lamp at a point. It reaches what a camera in its
-//! place sees: [`Light::camera`].
+//! Lambert's law. The light is far away, like the sun, or a lamp at a point. It reaches whatever a camera in
+//! its place sees: [`Light::camera`].
 
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::camera::{Camera, DEFAULT_FOV_DEG, Projection};
 
-/// The tone of faces turned away from the light, unless set otherwise.
+/// The default tone of faces turned away from the light.
 pub const AMBIENT: f64 = 0.25;
 
 /// The default light: to the left of the viewer, above, and behind, along right, up and forward.
 const LEFT_SHOULDER: DVec3 = DVec3::new(-0.45, 0.65, -0.85);
 
-/// The color of faces, unless set otherwise: paper.
+/// The default color of faces: paper.
 pub const DEFAULT_PAINT: [u8; 3] = [0xd8, 0xd4, 0xc8];
 
-/// How light the farthest point is in a picture of depth; the nearest is white.
+/// How light the farthest point is in a depth picture; the nearest is white.
 pub const FARTHEST: f64 = 0.1;
 
 /// Where the light comes from.
@@ -33,13 +33,13 @@ pub enum LightSource {
     /// From over the viewer's left shoulder, from far away.
     #[default]
     Shoulder,
-    /// From this direction of the world, from far away, as the sun's light.
+    /// From this direction of the world, from far away, like sunlight.
     From(DVec3),
-    /// From this point of the world, as a lamp's light.
+    /// From this point of the world, like a lamp.
     At(DVec3),
 }
 
-/// Why a light makes no shadows.
+/// Why a light cannot cast shadows.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LightError {
     /// A lamp within the box around the scene would need to look all around.
@@ -55,7 +55,7 @@ pub enum LightError {
 pub enum Light {
     /// The sun.
     Sun {
-        /// Towards it, of any length, as given: shadows fall exactly along it.
+        /// Toward it, of any length, as given: shadows fall exactly along it.
         from: DVec3,
         /// The same, of length one.
         towards: DVec3,
@@ -65,7 +65,7 @@ pub enum Light {
 }
 
 impl Light {
-    /// The light as `camera` has it. A direction without length is light over the shoulder.
+    /// The light for a view by `camera`. A zero direction means light over the shoulder.
     pub fn new(source: LightSource, camera: &Camera) -> Self {
         let frame = camera.frame();
         let DVec3 { x, y, z } = LEFT_SHOULDER;
@@ -79,7 +79,7 @@ impl Light {
         Self::Sun { from, towards }
     }
 
-    /// The direction towards the light, of length one, from a point of the world.
+    /// The direction toward the light, of length one, from a point of the world.
     #[inline]
     pub fn towards(&self, from: DVec3) -> DVec3 {
         match self {
@@ -102,8 +102,8 @@ impl Light {
         AMBIENT + (1.0 - AMBIENT) * normal.dot(self.towards(at)).max(0.0)
     }
 
-    /// A camera in the place of the light: what it sees of a scene within `bounds` is lit. All of that
-    /// box lies in front of it.
+    /// A camera in the place of the light: the parts of a scene within `bounds` that it sees are lit. All of
+    /// that box lies in front of it.
     ///
     /// # Errors
     /// See [`LightError`].

@@ -32,8 +32,8 @@ const GROWTH: f64 = 1.1;
 /// Heights that differ by less than this part of the range of heights are the same.
 const SAME_HEIGHT: f64 = 1e-6;
 
-/// A rim that passes a sample this close, as a part of an edge, runs through it: several points of the rim
-/// beside one another would differ by little more than their rounding, which makes dents in the rim.
+/// A rim that passes a sample this closely, as a fraction of an edge, runs through it: several points of the
+/// rim beside one another would differ by little more than their rounding, which makes dents in the rim.
 const AT_SAMPLE: f64 = 1e-6;
 
 /// A grid over a domain with a smooth rim: the border of the domain is found by bisection.

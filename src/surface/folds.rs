@@ -7,7 +7,7 @@
 //!              ╲╱    ╲ Φ < 0           X(u, v):      Φ = (∂X/∂u × ∂X/∂v) · (E − X)
 //! ```
 //!
-//! In orthographic projection E − P is the direction towards the eye everywhere.
+//! In orthographic projection E − P is the direction toward the eye everywhere.
 
 use glam::{DVec2, DVec3};
 

@@ -8,7 +8,7 @@ use super::axis_scale::AxisScale;
 use super::height_function::HeightFunction;
 use crate::surface::formula::Formula;
 
-/// Most samples of a grid: 10⁸.
+/// The maximum number of samples of a grid: 10⁸.
 pub const MAX_SAMPLES: usize = 100_000_000;
 
 /// Heights over a rectangular grid whose lines need not be evenly spaced.
@@ -17,7 +17,7 @@ pub const MAX_SAMPLES: usize = 100_000_000;
 ///   y ▲   (i,j+1)──(i+1,j+1)        The surface is triangulated: each cell is cut along
 ///     │      │    ╱    │            (i,j)–(i+1,j+1). Sample (i,j) is at (xs[i], ys[j]).
 ///     │      │  ╱      │            A height that is not a number is a hole: the cells
-///     │    (i,j)────(i+1,j)         around it are no part of the surface.
+///     │    (i,j)────(i+1,j)         around it are not part of the surface.
 ///     └──────────────────► x
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +66,7 @@ pub enum Holes {
     All,
 }
 
-/// Why numbers make no grid.
+/// Why numbers do not form a grid.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GridError {
     /// Fewer than two samples along an axis.
@@ -78,7 +78,7 @@ pub enum GridError {
         found: usize,
     },
     /// More than [`MAX_SAMPLES`].
-    #[error("{x} × {y} samples are more than {MAX_SAMPLES}")]
+    #[error("{x} × {y} samples exceed the limit of {MAX_SAMPLES}")]
     TooMany {
         /// Along x.
         x: usize,
@@ -104,7 +104,7 @@ pub enum GridError {
         axis: char,
         /// Counted from 0.
         index: usize,
-        /// The one that is no larger than the one before.
+        /// The value that is not larger than the one before it.
         value: f64,
     },
     /// Heights that do not fill the grid.

@@ -153,7 +153,7 @@ impl LinedMesh {
     }
 
     /// Moves vertices of functions to levels that they miss by rounding only: x² − y² is not 0 in all samples
-    /// with x = y. A crossing between such a vertex and the next could not be told from the vertex.
+    /// with x = y. A crossing between such a vertex and the next could not be distinguished from the vertex.
     fn move_to_levels(&mut self, levels: &[f64]) {
         let mut rises = vec![0.0_f64; self.positions.len()];
         for (_, triangles) in self.traced_sheets() {

@@ -1,4 +1,4 @@
-//! Surfaces z = f(x, y): where their samples come from, and the mesh they make.
+//! Surfaces z = f(x, y): where their samples come from, and the mesh that they form.
 
 pub mod formula;
 

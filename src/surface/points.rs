@@ -79,7 +79,7 @@ pub enum PointsError {
         heights: [f64; 2],
     },
     /// Too few points, or all on one line.
-    #[error("{found} points make no triangle: at least 3 are needed that are not on one line")]
+    #[error("{found} points make no triangle: at least 3 that are not on one line are needed")]
     NoTriangle {
         /// How many there are.
         found: usize,

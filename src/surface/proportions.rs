@@ -13,7 +13,7 @@ const MOST_OBLONG: f64 = 5.0;
 /// Height of the drawn box as a part of the longer side of its base, with [`Aspect::Box`].
 const BOX_HEIGHT: f64 = 0.4;
 
-/// An end of the drawn box is an end of the range that was asked for if it is this close, as a part of the
+/// An end of the drawn box is an end of the range that was requested if it is this close, as a part of the
 /// box: sampling rounds.
 const RANGE_ROUNDING: f64 = 1e-12;
 
@@ -41,7 +41,7 @@ impl Surface {
         Ok([drawn('x', self.x, scales[0])?, drawn('y', self.y, scales[1])?])
     }
 
-    /// The values between two corners of the drawn box: those that were asked for where these are the
+    /// The values between two corners of the drawn box: those that were requested where these are the
     /// ends, since converting back would round.
     pub(super) fn ranges(
         &self,

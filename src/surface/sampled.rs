@@ -14,7 +14,7 @@ use super::places::Places;
 use crate::camera::Camera;
 use crate::extent::Extent;
 
-/// A surface sampled at points. Its [`Display`](fmt::Display) says how many, for messages.
+/// A surface sampled at points. Its [`Display`](fmt::Display) shows how many, for messages.
 #[derive(Debug, Clone)]
 pub struct SampledSurface {
     pub(super) sheets: Samples,
@@ -30,7 +30,7 @@ pub struct SampledSurface {
     pub(super) factors: DVec3,
     /// The lines of the lattice before that, if formulas were sampled.
     pub(super) places: Option<Places>,
-    /// The heights that were asked for, as drawn, and the values that they stand for.
+    /// The requested range of heights, as drawn, and in values.
     pub(super) given_heights: Option<(f64, f64)>,
     pub(super) given_range: Option<(f64, f64)>,
     /// Where what is given by points is cut off.
@@ -90,18 +90,18 @@ impl SampledSurface {
         self.places.as_ref()
     }
 
-    /// Whether the range of its heights was asked for.
+    /// Whether a range of heights was requested.
     pub(crate) fn has_given_heights(&self) -> bool {
         self.given_heights.is_some()
     }
 
-    /// The heights that were asked for, from the smaller to the larger one.
+    /// The requested range of heights, from the smaller to the larger one.
     pub fn given_range(&self) -> Option<(f64, f64)> {
         self.given_range
     }
 
-    /// The corners of the box around the surface: its [`bounds`](Self::bounds), but with the heights that
-    /// were asked for.
+    /// The corners of the box around the surface: its [`bounds`](Self::bounds), but with the requested range
+    /// of heights.
     pub fn box_bounds(&self) -> (DVec3, DVec3) {
         let (mut low, mut high) = self.bounds();
         if let Some((least, most)) = self.given_heights {
@@ -111,7 +111,7 @@ impl SampledSurface {
         (low, high)
     }
 
-    /// Whether heights seem to grow without end somewhere, where it is cut off there.
+    /// Whether heights seem to grow without bound somewhere and are cut off there.
     pub(crate) fn has_poles(&self) -> bool {
         match &self.sheets {
             Samples::Trimmed { grids, .. } => grids.iter().any(TrimmedGrid::has_poles),
@@ -186,7 +186,7 @@ impl SampledSurface {
         bounds
     }
 
-    /// What of the image the lines of its lattices take up; nothing for scattered points.
+    /// The extent of the lines of its lattices in the image; empty for scattered points.
     pub fn extent(&self, camera: &Camera) -> Extent {
         let of = |lattice: &Lattice| {
             lattice_extent(lattice.n_columns, lattice.n_samples, &lattice.sample, camera)

@@ -39,7 +39,7 @@ impl Surface {
         self.given_heights().filter(|_| is_formula && self.outside == Outside::Cut)
     }
 
-    /// The range of heights that is asked for, if it is, in coordinates before any is multiplied.
+    /// The range of heights that is requested, if it is, in coordinates before any is multiplied.
     fn given_heights(&self) -> Option<(f64, f64)> {
         let scale = self.own_scales()[2];
         let drawn = |z: f64| match scale.is_log && z <= 0.0 {
@@ -50,7 +50,7 @@ impl Surface {
         Some((a.min(b), a.max(b)))
     }
 
-    /// The formula of a sheet, with plateaus if these are asked for.
+    /// The formula of a sheet, with plateaus if these are requested.
     fn height_of(&self, sheet: &FormulaSheet) -> Formula {
         match (self.z, self.outside) {
             (Some((a, b)), Outside::Clamp) => sheet.height.clamped(a.min(b), a.max(b)),

@@ -1,4 +1,4 @@
-//! Surfaces as they are described, before they are sampled.
+//! Descriptions of surfaces, before they are sampled.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -11,10 +11,10 @@ use super::names::{name_of_values, typeset};
 use super::points::{PointsError, delaunay};
 use crate::model::mesh::MeshError;
 
-/// The range of x and y that a formula is sampled over, unless set otherwise.
+/// The default range of x and y over which a formula is sampled.
 pub const DEFAULT_RANGE: (f64, f64) = (-5.0, 5.0);
 
-/// Samples along each axis, unless set otherwise.
+/// The default number of samples along each axis.
 pub const DEFAULT_SAMPLES: usize = 81;
 
 /// A surface to draw: one or more sheets z = f(x, y), a grid of heights, scattered points, or a
@@ -44,16 +44,16 @@ pub struct Surface {
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
     pub(super) z: Option<(f64, f64)>,
-    /// What to do with heights outside that.
+    /// What to do with heights outside that range.
     pub(super) outside: Outside,
     pub(super) samples: (usize, usize),
     pub(super) aspect: Aspect,
     pub(super) z_scale: f64,
     /// Which of the axes x, y, z are logarithmic.
     pub(super) log: [bool; 3],
-    /// Whether x and y run the other way.
+    /// Whether x and y are reversed.
     pub(super) reversed: [bool; 2],
-    /// The names of the sheets, as far as they have any.
+    /// The names of the sheets that have one.
     names: Vec<String>,
 }
 
@@ -82,16 +82,16 @@ pub(super) enum Source {
 /// A sheet z = f(x, y).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormulaSheet {
-    /// z as a formula of x and y.
+    /// z as a formula in x and y.
     pub height: Formula,
-    /// Where the sheet is, as a formula of x and y that is true there; `None` is wherever it has a height.
+    /// The domain of the sheet, as a condition on x and y; `None` for wherever it has a height.
     pub domain: Option<Formula>,
 }
 
-/// Why there are no sheets for values of parameters.
+/// Why sheets cannot be made for values of parameters.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FamilyError {
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     #[error(transparent)]
     Formula(#[from] FormulaError),
     /// The values cannot be combined.
@@ -102,10 +102,10 @@ pub enum FamilyError {
 /// What to do with heights outside the range of z.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Outside {
-    /// The surface is cut off.
+    /// Cut the surface off.
     #[default]
     Cut,
-    /// There are plateaus at the ends of the range.
+    /// Clamp heights to the range, which makes plateaus.
     Clamp,
 }
 
@@ -122,7 +122,7 @@ impl Outside {
     }
 }
 
-/// How long the edges of the box around a surface are.
+/// The proportions of the box around a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aspect {
     /// x and y to scale, and 0.4 times the longer of the two for heights. If one of x and y is more than
@@ -135,10 +135,10 @@ pub enum Aspect {
 }
 
 impl Surface {
-    /// The sheet z = `text`, a formula of x, y, r and theta, for x and y from -5 to 5.
+    /// The sheet z = `text`, a formula in x, y, r and theta, for x and y from -5 to 5.
     ///
     /// # Errors
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     pub fn formula(text: &str) -> Result<Self, FormulaError> {
         Ok(Self::formulas(vec![Formula::parse(text, Variables::Plane)?]))
     }
@@ -149,7 +149,7 @@ impl Surface {
         Self::sheets(formulas.into_iter().map(sheet).collect())
     }
 
-    /// Sheets that each have a domain of their own.
+    /// Sheets that each have their own domain.
     pub fn sheets(sheets: Vec<FormulaSheet>) -> Self {
         Self::new(Source::Formulas(sheets), Aspect::Box)
     }
@@ -167,7 +167,7 @@ impl Surface {
     /// ```
     ///
     /// # Errors
-    /// The text is not a formula, a name is in two lists, or there are too many combinations.
+    /// The text is not a valid formula, a name is in two lists, or there are too many combinations.
     pub fn formula_for(text: &str, lists: &[ParameterList]) -> Result<Self, FamilyError> {
         let combinations = ParameterList::combinations(lists)?;
         let parse =
@@ -271,7 +271,7 @@ impl Surface {
     /// its heights are drawn to the scale of x and y.
     ///
     /// # Errors
-    /// A text is not a formula.
+    /// A text is not a valid formula.
     pub fn parametric(
         texts: [&str; 3],
         u: (f64, f64),
@@ -305,10 +305,10 @@ impl Surface {
         }
     }
 
-    /// Adds a sheet. It matters only for surfaces of formulas.
+    /// Adds a sheet. This applies only to surfaces of formulas.
     ///
     /// # Errors
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     pub fn sheet(mut self, text: &str) -> Result<Self, FormulaError> {
         let formula = Formula::parse(text, Variables::Plane)?;
         if let Source::Formulas(sheets) = &mut self.source {
@@ -318,11 +318,11 @@ impl Surface {
         Ok(self)
     }
 
-    /// Where the surface is: a formula of x and y that is true there, such as `r <= 3`. The surface is
-    /// cut along the border. It matters only for surfaces of formulas.
+    /// Sets the domain of the surface: a condition on x and y, such as `r <= 3`. The surface is cut along its
+    /// border. This applies only to surfaces of formulas.
     ///
     /// # Errors
-    /// The text is not a formula.
+    /// The text is not a valid formula.
     pub fn domain(self, text: &str) -> Result<Self, FormulaError> {
         Ok(self.within(Formula::parse(text, Variables::Plane)?))
     }
@@ -335,22 +335,21 @@ impl Surface {
         self
     }
 
-    /// The range of x that formulas are sampled over. If `from` is larger than `to`, the axis is turned
-    /// around.
+    /// The range of x over which formulas are sampled. If `from` is larger than `to`, the axis is reversed.
     pub fn x(mut self, from: f64, to: f64) -> Self {
         self.x = (from, to);
         self
     }
 
-    /// The range of y that formulas are sampled over, as for [`x`](Self::x).
+    /// The range of y over which formulas are sampled, as for [`x`](Self::x).
     pub fn y(mut self, from: f64, to: f64) -> Self {
         self.y = (from, to);
         self
     }
 
-    /// The heights that are drawn: the surface is cut off exactly at both, and the box around it has these
-    /// heights. If `from` is larger than `to`, the axis is turned around. Without it all heights are drawn,
-    /// but for those that grow without end at poles of formulas.
+    /// The range of heights to draw: the surface is cut off exactly at both, and the box around it has these
+    /// heights. If `from` is larger than `to`, the axis is reversed. By default all heights are drawn, except
+    /// where formulas grow without bound at poles.
     ///
     /// ```
     /// use hiddenline::Surface;
@@ -376,14 +375,14 @@ impl Surface {
         self
     }
 
-    /// How many samples are taken of formulas along x (or u) and along y (or v).
+    /// The number of samples of formulas along x (or u) and along y (or v).
     pub fn samples(mut self, along_x: usize, along_y: usize) -> Self {
         self.samples = (along_x, along_y);
         self
     }
 
-    /// How long the edges of the box around the surface are; [`Aspect::Box`] unless set, but
-    /// [`Aspect::Data`] for parametric surfaces.
+    /// The proportions of the box around the surface; by default [`Aspect::Box`], or [`Aspect::Data`] for
+    /// parametric surfaces.
     pub fn aspect(mut self, aspect: Aspect) -> Self {
         self.aspect = aspect;
         self
@@ -395,7 +394,7 @@ impl Surface {
         self
     }
 
-    /// Which of the axes x, y and z are logarithmic. Formulas see true values, sampled evenly in the
+    /// Which of the axes x, y and z are logarithmic. Formulas use the true values, sampled evenly in the
     /// logarithm. Points where one of these values is not above 0 are holes.
     ///
     /// ```
@@ -409,7 +408,7 @@ impl Surface {
         self
     }
 
-    /// Which of the axes x and y run the other way.
+    /// Which of the axes x and y are reversed.
     pub fn reversed(mut self, axes: [bool; 2]) -> Self {
         self.reversed = axes;
         self
@@ -421,7 +420,7 @@ impl Surface {
         self
     }
 
-    /// How many sheets there are; 1 for what is no formula.
+    /// The number of sheets; 1 for surfaces that are not formulas.
     pub fn n_sheets(&self) -> usize {
         match &self.source {
             Source::Formulas(sheets) => sheets.len(),
@@ -429,8 +428,8 @@ impl Surface {
         }
     }
 
-    /// The names of the sheets: those that were given, or else their formulas with mathematical signs. Empty
-    /// where there is neither.
+    /// The names of the sheets: the given names, or else their formulas in mathematical notation. Empty if
+    /// there is neither.
     pub fn sheet_names(&self) -> Vec<String> {
         let formula = |k: usize| match &self.source {
             Source::Formulas(sheets) => {
@@ -442,8 +441,8 @@ impl Surface {
         (0..self.n_sheets()).map(name).collect()
     }
 
-    /// How many samples there are along each axis if formulas are sampled; `None` for what is given by
-    /// points, which cannot be sampled more finely.
+    /// The number of samples along each axis if formulas are sampled; `None` for surfaces given by points,
+    /// which cannot be sampled more finely.
     pub fn samples_of_formulas(&self) -> Option<(usize, usize)> {
         match self.source {
             Source::Formulas(_) | Source::Parametric { .. } => Some(self.samples),

@@ -122,7 +122,7 @@ impl Splitting<'_> {
             if let Some(saddle) = function.saddle(start, a, c) {
                 return Some(Center::Inside(saddle));
             }
-            // Without a saddle inside, what lies beyond the extreme goes on from there through the cell.
+            // Without a saddle inside, what lies beyond the extreme continues from there through the cell.
             let corners = [a, b, c, d];
             if let Some(extreme) = ring.iter().position(|p| !corners.contains(p)) {
                 return Some(Center::OnRing(extreme));

@@ -191,7 +191,7 @@ impl<'a> TornFunction<'a> {
 }
 
 /// What of a tear's edge has heights: the points that both sides end at, found by `last`, which goes from
-/// a sample towards a point.
+/// a sample toward a point.
 pub(super) fn ends_of(
     grid: &Grid,
     tear: &Tear,

@@ -24,7 +24,7 @@ pub struct GcodeProfile {
     /// Unit of positions and speeds.
     #[serde(default)]
     pub unit: Unit,
-    /// Whether y runs up from the bottom of the page; true unless given.
+    /// Whether y runs up from the bottom of the page; true by default.
     #[serde(default = "yes")]
     pub flip_y: bool,
     /// Decimals of positions, 9 at most.
@@ -49,7 +49,7 @@ pub struct GcodeProfile {
     #[serde(default)]
     pub layer_end: String,
     /// Between two layers, before the start of the second one, to change pens; also before a first layer
-    /// that asks for a pause.
+    /// that requests a pause.
     #[serde(default)]
     pub pen_change: String,
     /// At the end of the file.
@@ -87,15 +87,15 @@ impl Unit {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GcodeError {
     /// No such profile.
-    #[error("unknown G-code profile {name:?}; known are {known}")]
+    #[error("unknown G-code profile {name:?}; choose from {known}")]
     UnknownProfile {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,
     },
     /// A template has a placeholder that does not exist.
-    #[error("template {template}: unknown placeholder {{{placeholder}}}; known are {known}")]
+    #[error("template {template}: unknown placeholder {{{placeholder}}}; choose from {known}")]
     UnknownPlaceholder {
         /// The template's name.
         template: &'static str,
@@ -138,7 +138,7 @@ impl GcodeProfile {
         Ok(profiles.into_keys().collect())
     }
 
-    /// A known profile as TOML, to start from; `None` when there is none of that name.
+    /// A built-in profile as TOML, to start from; `None` if no profile has that name.
     ///
     /// # Errors
     /// Only for a defect in the profiles themselves.

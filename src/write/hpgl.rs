@@ -50,7 +50,7 @@ pub struct Plotter {
     /// Instruction that stops the machine until someone presses a button, with its semicolon.
     #[serde(default)]
     pub pause: Option<String>,
-    /// Papers it takes.
+    /// Paper sizes that it takes.
     pub paper: Vec<PlotterPaper>,
 }
 
@@ -58,9 +58,9 @@ pub struct Plotter {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlotterPaper {
-    /// Names, the usual one first.
+    /// Names, the most common one first.
     pub names: Vec<String>,
-    /// What to set or to know.
+    /// Notes on setup and use.
     #[serde(default)]
     pub note: String,
     /// Width and height in millimeters.
@@ -81,7 +81,7 @@ pub struct PlotterPaper {
     pub park: [i32; 2],
 }
 
-/// The plotter that HPGL is for unless another is named.
+/// The default plotter for HPGL.
 pub const DEFAULT_MACHINE: &str = "hp7475a";
 
 /// A plotter with a paper in it: what [`write()`] draws on.
@@ -97,25 +97,25 @@ pub struct LoadedPlotter {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlotterError {
     /// No such plotter.
-    #[error("unknown plotter {name:?}; known are {known}")]
+    #[error("unknown plotter {name:?}; choose from {known}")]
     UnknownMachine {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,
     },
     /// No such paper.
-    #[error("{machine} takes no paper called {name:?}; it takes {known}")]
+    #[error("{machine} has no paper called {name:?}; choose from {known}")]
     UnknownPaper {
         /// The plotter.
         machine: String,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,
     },
     /// No paper as large as the page.
-    #[error("{machine} takes no paper of {width_mm} × {height_mm} mm; it takes {known}")]
+    #[error("{machine} does not take paper of {width_mm} × {height_mm} mm; choose from {known}")]
     NoPaperOfSize {
         /// The plotter.
         machine: String,
@@ -153,19 +153,19 @@ pub enum PlotterError {
         machine: String,
         /// `speed` or `force`.
         what: &'static str,
-        /// The value asked for.
+        /// The value requested.
         value: u32,
         /// The lowest value it takes.
         low: u32,
         /// The highest value it takes.
         high: u32,
     },
-    /// A list of plotters does not read.
+    /// A list of plotters is not valid TOML.
     #[error("plotter profiles: {0}")]
     Toml(#[from] toml::de::Error),
 }
 
-/// The known plotters.
+/// The built-in plotters.
 ///
 /// # Errors
 /// Only for a defect in the list itself.
@@ -203,7 +203,7 @@ impl Plotter {
     /// The entry of a built-in plotter, for machines that differ from it in a few values.
     ///
     /// # Errors
-    /// None but for a defect in the list itself.
+    /// Only for a defect in the list itself.
     pub fn table(name: &str) -> Result<Option<toml::Table>, PlotterError> {
         let mut list: toml::Table = toml::from_str(include_str!("hpgl_machines.toml"))?;
         let Some(toml::Value::Array(machines)) = list.remove("machine") else { return Ok(None) };
@@ -218,8 +218,8 @@ impl Plotter {
         Ok(tables.find(is_it))
     }
 
-    /// Checks that the machine takes its own speed and force. Machines that do not say what they
-    /// take are believed.
+    /// Checks that the machine takes its own speed and force. Machines that do not list their limits are not
+    /// checked.
     ///
     /// # Errors
     /// [`PlotterError::OutOfRange`].
@@ -236,7 +236,7 @@ impl Plotter {
         Ok(())
     }
 
-    /// Value of `VS` for a layer: the share of the highest speed that its label asks for, or else the
+    /// Value of `VS` for a layer: the share of the highest speed that its label requests, or else the
     /// machine's setting.
     fn layer_speed(&self, layer: &Layer) -> Option<u32> {
         match (layer.speed_percent(), self.speeds) {
@@ -301,7 +301,7 @@ impl LoadedPlotter {
 }
 
 impl LoadedPlotter {
-    /// What of the page the pen can reach: lowest and highest corner in page millimeters.
+    /// The part of the page that the pen can reach: lowest and highest corner in page millimeters.
     pub fn reach(&self, plot: &Plot) -> [DVec2; 2] {
         let Self { machine, paper } = self;
         let corner = |x: i32, y: i32| {
@@ -328,8 +328,8 @@ impl Plotter {
         Some(low.max_element().max(beyond.max_element()))
     }
 
-    /// Gives the layers of a drawing that was read the machine's pens: numbers that the machine has
-    /// are kept, and other layers get the lowest free ones, in order.
+    /// Assigns the machine's pens to the layers of a drawing from a file: numbers that the machine has are
+    /// kept, and other layers get the lowest free ones, in order.
     ///
     /// # Errors
     /// [`PlotterError::TooManyPens`] if more layers have ink than the machine has pens.
@@ -363,7 +363,7 @@ fn fits(plot: &Plot, paper: &PlotterPaper, sideways: bool) -> bool {
 }
 
 /// Writes `plot` for the plotter. Pages upright are turned a quarter to the left if only that fits
-/// the paper; what lies outside of [`LoadedPlotter::reach`] is cut off.
+/// the paper; anything outside [`LoadedPlotter::reach`] is cut off.
 ///
 /// # Errors
 /// Those of `out`.

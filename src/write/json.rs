@@ -1,6 +1,6 @@
 //! Strokes as JSON, in image coordinates, for tests, scripts and other tools.
 //!
-//! Every number reads back as the very same `f64`. The camera can be read back with
+//! Every number reads back as exactly the same `f64`. The camera can be read back with
 //! [`read_camera`].
 
 use std::io;
@@ -127,18 +127,18 @@ impl From<&Camera> for CameraRecord {
     }
 }
 
-/// Why a text holds no camera.
+/// Why a camera cannot be read from a text.
 #[derive(Debug, Error)]
 pub enum ReadCameraError {
     /// It is not JSON, or not a strokes file.
     #[error("this is not a file of strokes as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// The numbers make no camera.
+    /// The numbers are not a valid camera.
     #[error(transparent)]
     Camera(#[from] CameraError),
 }
 
-/// Reads the camera of a strokes file; its strokes are passed over.
+/// Reads the camera of a strokes file; its strokes are skipped.
 ///
 /// # Errors
 /// See [`ReadCameraError`].

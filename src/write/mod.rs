@@ -26,14 +26,14 @@ pub use self::target::{Target, WriteError, write};
 
 use crate::plot::Plot;
 
-/// What can be written.
+/// Output formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Scalable vector graphics in millimeters, one layer for each pen.
     Svg,
     /// Instructions for pen plotters.
     Hpgl,
-    /// Instructions for machines run by GRBL, Marlin and the like.
+    /// Instructions for machines with GRBL, Marlin and similar firmware.
     Gcode,
     /// A page for print.
     Pdf,
@@ -76,7 +76,7 @@ impl Format {
         }
     }
 
-    /// The format that a file name's extension stands for.
+    /// The format of a file name extension.
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
         let is_known = |known: &&str| extension.eq_ignore_ascii_case(known);
@@ -94,7 +94,7 @@ impl Format {
     }
 }
 
-/// All extensions of names of files that can be written, for messages.
+/// The extensions of all output formats, for messages.
 pub(crate) fn known_extensions() -> String {
     let extensions = Format::ALL.iter().flat_map(|format| format.extensions());
     extensions.map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")

@@ -1,4 +1,4 @@
-//! PDF for print: one page of the sheet's size, areas filled, strokes as lines of the pens' widths.
+//! PDF for print: one page of the sheet size, with filled areas, and strokes as lines of pen width.
 //!
 //! Written with `pdf-writer`, whose numbers are `f32`: a hundredth of a micrometer on a large
 //! sheet. Coordinates are rounded to micrometers before.

@@ -13,7 +13,7 @@ use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, 
 use crate::plot::{Fills, Plot};
 use crate::shading::light::order_color;
 
-/// Pixels per inch, unless set otherwise.
+/// Pixels per inch by default.
 pub const DEFAULT_DPI: f64 = 150.0;
 
 /// More pixels than this are refused: they would take more than a gigabyte.
@@ -61,7 +61,7 @@ pub enum PngError {
     /// No pixels, or too many.
     #[error("a picture of {width_px:.0} x {height_px:.0} pixels cannot be made")]
     Size {
-        /// Width asked for.
+        /// Width requested.
         width_px: f64,
         /// Height that follows.
         height_px: f64,
@@ -84,7 +84,7 @@ pub fn write(plot: &Plot, resolution: Resolution, out: &mut dyn io::Write) -> Re
     write_marked(plot, resolution, Marks::default(), out)
 }
 
-/// Writes a picture of `plot` that also shows the pens' movements. O(pixels + strokes).
+/// Writes a picture of `plot` that also shows pen movement. O(pixels + strokes).
 ///
 /// # Errors
 /// See [`PngError`].

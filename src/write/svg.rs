@@ -41,9 +41,9 @@ impl StrokeElement {
 
 /// Writes `plot` as SVG. The same plot gives the same bytes.
 ///
-/// Coordinates are millimeters with up to three decimals. Points that are equal after rounding to
-/// these are one; a stroke of which one point is left is left out. A dot is a line to where it begins,
-/// which round caps make visible. O(points).
+/// Coordinates are millimeters with up to three decimals. Points that are equal after rounding to these are
+/// one; a stroke reduced to one point is left out. A dot is a line back to its start, which round caps make
+/// visible. O(points).
 ///
 /// # Errors
 /// Those of `out`.
@@ -159,7 +159,7 @@ fn push_area(text: &mut String, area: &Area, seam: &str) {
 /// Points of strokes that are written at once: enough that sharing the work costs nothing.
 const POINTS_AT_ONCE: usize = 1 << 14;
 
-/// So many batches are put together at a time, so that a large drawing is not in memory twice as text.
+/// This many batches are put together at a time, so that a large drawing is not in memory twice as text.
 const BATCHES_AT_ONCE: usize = 64;
 
 /// All strokes of a layer, one a line.

@@ -1,4 +1,4 @@
-//! What a plot is written as: a format, with what that format needs to know.
+//! How a plot is written: a format and its settings.
 
 use std::io;
 
@@ -25,7 +25,7 @@ pub enum Target {
     /// A page for print.
     #[cfg(feature = "pdf")]
     Pdf,
-    /// A picture, and what it shows of the pens' travel.
+    /// A picture, and how it shows pen movement.
     #[cfg(feature = "png")]
     Png(Resolution, Marks),
     /// HPGL for a plotter.
@@ -36,17 +36,17 @@ pub enum Target {
     Gcode(Box<gcode::GcodeProfile>),
 }
 
-/// Why a plot is not written.
+/// Why a plot cannot be written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The output fails.
+    /// Writing to the output failed.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The format was left out when the crate was built.
-    #[error("this build cannot write {}; turn on the crate's feature for it", .0.name())]
+    /// The format is not in this build.
+    #[error("this build cannot write {}; enable its feature of the crate", .0.name())]
     FormatOff(Format),
-    /// Strokes as JSON hold more than a plot does.
+    /// JSON holds strokes, which contain more than a plot.
     #[error("JSON holds strokes in image coordinates, which a sheet no longer has")]
     OnlyStrokes,
     /// The format has lines only.
@@ -54,9 +54,9 @@ pub enum WriteError {
     NoFills(#[from] NoFills),
     /// No plotter and no G-code profile has this name.
     #[cfg(feature = "plotters")]
-    #[error("there is no machine called `{name}`; known are {known}")]
+    #[error("unknown machine `{name}`; choose from {known}")]
     UnknownMachine {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// All names.
         known: String,
@@ -86,11 +86,11 @@ impl From<PngError> for WriteError {
 }
 
 impl Target {
-    /// The usual target of a format: HPGL for an HP 7475A, G-code for GRBL with a pen servo, 300
+    /// The default target of a format: HPGL for an HP 7475A, G-code for GRBL with a pen servo, 300
     /// pixels per inch.
     ///
     /// # Errors
-    /// The format's feature is off, or a plot alone does not do for it (JSON).
+    /// The format's feature is off, or it needs more than a plot (JSON).
     pub fn usual(format: Format) -> Result<Self, WriteError> {
         Ok(match format {
             Format::Svg => Self::Svg(StrokeElement::default()),
@@ -145,7 +145,7 @@ impl Target {
 /// Writes `plot` to `out`. O(points), and O(pixels) for a picture.
 ///
 /// # Errors
-/// See [`WriteError`]. Nothing has been written to `out` when the plot does not suit the target.
+/// See [`WriteError`]. Nothing is written to `out` if the plot does not suit the target.
 pub fn write(plot: &Plot, target: &Target, out: &mut dyn io::Write) -> Result<(), WriteError> {
     match target {
         Target::Svg(element) => Ok(svg::write(plot, *element, out)?),

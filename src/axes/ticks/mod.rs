@@ -18,19 +18,19 @@ pub(super) use self::spacing::Ticks;
 use self::numbers::Unit;
 use self::spacing::Spacing;
 
-/// Most ticks with a step that was asked for.
+/// The maximum number of ticks with a requested step.
 const MOST_TICKS: i64 = 1000;
 
 /// Proposals that are worth trying.
 const MOST_PROPOSALS: usize = 40;
 
-/// Which numbers an axis has.
+/// The numbers on an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum TickRule {
     /// Round numbers, about as many as there is room for.
     #[default]
     Round,
-    /// The multiples of this.
+    /// All multiples of this number.
     Step(f64),
     /// Multiples of π, π/2 or π/4, written with π.
     Pi,

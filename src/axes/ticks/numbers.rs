@@ -1,4 +1,4 @@
-//! Units that ticks are multiples of, and the numbers written beside them.
+//! Units for the multiples at which ticks are placed, and the numbers written beside them.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! What is known about an axis before it has ticks.
+//! What is known about an axis before ticks are chosen.
 
 use super::numbers::Unit;
 
@@ -26,7 +26,7 @@ impl AxisRange {
 
     /// The first and the last multiple of a unit in the range, or a little outside of it if it may
     /// grow, of those that are `start` more than a multiple of `every`. `None` if multiples are too
-    /// many to be told apart.
+    /// many to be distinguished.
     pub(super) fn indices(&self, unit: Unit, every: i64, start: i64) -> Option<(i64, i64)> {
         /// Whole numbers above this are not all exact when multiplied by a unit.
         const MOST: f64 = 1e12;

@@ -1,8 +1,8 @@
 //! Steps between round numbers, scored as Talbot, Lin & Hanrahan do: An Extension of Wilkinson's
 //! Algorithm for Positioning Tick Labels on Axes, InfoVis 2010.
 //!
-//! Differs from the paper in that ticks outside of the range are not considered, unless it may grow, and
-//! that ticks at both ends are worth more. Whether numbers touch is decided by the layout.
+//! Differs from the paper: ticks outside the range are not considered, unless the range may grow, and ticks
+//! at both ends are worth more. Whether numbers touch is decided by the layout.
 
 use super::numbers::Unit;
 use super::range::AxisRange;

@@ -14,30 +14,30 @@ use crate::cli::{config, values};
 #[derive(Args)]
 #[command(next_help_heading = "Lines")]
 pub(super) struct LineArgs {
-    /// Kinds of line to draw, with commas between them
+    /// Kinds of lines to draw, separated by commas
     ///
     ///   silhouette    between a front and a back face
     ///   crease        where faces meet at more than --crease
-    ///   boundary      on one face only
-    ///   nonmanifold   on three faces or more
+    ///   boundary      edges of only one face
+    ///   nonmanifold   edges of three or more faces
     ///   intersection  where faces pierce each other
     ///   wire          polylines of the model that border no face
     ///   material      where groups or materials change
     ///   mesh, all     every edge of the mesh
-    ///   outline       silhouette, boundary and nonmanifold edges where the background is seen
-    ///                 beside them; with other kinds it has its own pen, twice as wide
-    ///   shadow        outlines of the shadows that --light casts, also on the --ground
+    ///   outline       silhouette, boundary and nonmanifold edges against the background;
+    ///                 together with other kinds it has its own pen, twice as wide
+    ///   shadow        outlines of the shadows cast by --light, also on the --ground
     ///
-    /// An edge to which several kinds apply is drawn when any of them is named.
+    /// An edge of several kinds is drawn if any of them is selected.
     #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, verbatim_doc_comment)]
     #[arg(hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     pub(super) lines: LineSelection,
-    /// Faces that meet at more than this angle make a crease
+    /// Faces that meet at more than this angle form a crease
     #[arg(long, value_name = "DEG", value_parser = values::crease)]
     #[arg(default_value_t = DEFAULT_CREASE_DEG)]
     crease: f64,
-    /// Hidden lines: left out, or drawn on their own layer [default: none]
+    /// How to draw hidden lines [default: none]
     #[arg(long, value_parser = one_of::<HiddenLines>())]
     hidden: Option<HiddenLines>,
     /// Draw hidden lines behind at most N faces, each level on its own layer
@@ -47,36 +47,36 @@ pub(super) struct LineArgs {
     /// their pens.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=99))]
     hidden_levels: Option<u32>,
-    /// Lengths of dashes and gaps of hidden lines [default: 12 and 3 widths of their pen]
+    /// Dash and gap length of hidden lines [default: 12 and 3 pen widths]
     #[arg(long, value_name = "DASH,GAP", value_parser = values::dash)]
     pub(super) dash: Option<Dash>,
-    /// Draw ink once where it lies on other ink, or keep all of it
+    /// Draw overlapping ink once, or keep all of it
     ///
-    /// Visible lines come before hidden ones, then outline, silhouette, boundary, intersection, crease,
-    /// mesh. --overlap-tolerance says how close is on it. Lines with exactly the same image are drawn
-    /// once in any case.
+    /// Visible lines take precedence over hidden ones, then in the order outline, silhouette, boundary,
+    /// intersection, crease, mesh. --overlap-tolerance sets how close counts as overlapping. Lines with
+    /// exactly the same image are always drawn once.
     #[arg(long, value_name = "WHAT", value_enum, default_value = "drop")]
     overlap: Overlap,
-    /// Leave room between lines: end the less important of two that run nearer than MM
+    /// Thin out crowded lines: where two are closer than MM, end the less important one
     ///
-    /// Measured between the middles of the lines, and only where they run in nearly the same direction.
-    /// Without a value 1.5 widths of the pen, which leaves half a pen's width of paper between them.
+    /// Distances are measured between centerlines that run in nearly the same direction. The default is
+    /// 1.5 pen widths, which leaves half a pen width of paper between lines.
     #[arg(long, value_name = "MM", value_parser = values::length, num_args = 0..=1)]
     #[arg(require_equals = true)]
     thin: Option<Option<f64>>,
-    /// Let lines stop this far from nearer silhouettes, borders and wires
+    /// Stop lines this far from nearer silhouettes, boundaries and wires
     ///
-    /// Shows which of two lines passes in front. 0.8 suits most pens; less than 0.6 is bridged by some
-    /// plotting software.
+    /// The gap shows which of two lines passes in front. 0.8 suits most pens; some plotting software
+    /// bridges gaps of less than 0.6.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value_t = 0.0)]
     halo: f64,
-    /// Widths of lines
+    /// Line widths
     ///
     ///   plain      one pen for all visible lines
-    ///   technical  the outline by a pen twice as wide: the same as adding outline to --lines
-    ///   bold       the outline by a pen four times as wide, silhouettes by one twice as wide: the same
-    ///              as adding outline to --lines, with --pen outline=2:1.2mm --pen silhouette=3:0.6mm
-    ///              for a pen of 0.3 mm
+    ///   technical  outline twice as wide; the same as adding outline to --lines
+    ///   bold       outline four times as wide, silhouettes twice as wide; with a 0.3 mm pen,
+    ///              the same as adding outline to --lines and giving
+    ///              --pen outline=2:1.2mm --pen silhouette=3:0.6mm
     #[arg(long, value_enum, default_value = "plain", verbatim_doc_comment)]
     pub(super) style: Style,
     /// Hidden-line algorithm; all give the same drawing
@@ -84,8 +84,8 @@ pub(super) struct LineArgs {
     engine: LineEngine,
     /// Faces do not hide lines this close to their plane, in model units
     ///
-    /// For parts that touch, but not exactly. The default is about the rounding of the largest
-    /// coordinate in single precision; 0 turns it off.
+    /// For parts that nearly touch. The default is about the rounding error of the largest coordinate in
+    /// single precision; 0 turns it off.
     #[arg(long, value_name = "D", value_parser = values::not_negative)]
     contact_tolerance: Option<f64>,
     /// Drop visible strokes shorter than this on paper, and close gaps shorter than this in a line

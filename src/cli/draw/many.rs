@@ -1,8 +1,7 @@
 //! Many drawings at once: frames of a turntable, views of a table, a drawing of each model.
 //!
-//! A scene is built once for all its views, and views are drawn in parallel. Frames have one scale, so
-//! that they can be laid over each other; models are fitted to their pages one by one. Messages come in
-//! the order of the drawings.
+//! A scene is built once for all its views, and views are drawn in parallel. Frames share one scale, so they
+//! can be overlaid; models are fitted to their pages one by one. Messages come in the order of the drawings.
 
 mod shard;
 mod views;
@@ -38,37 +37,36 @@ use crate::cli::{Refused, messages};
 #[derive(Args)]
 #[command(next_help_heading = "Many drawings")]
 pub(super) struct ManyArgs {
-    /// Draw N frames on the way once around the model, all at one scale
+    /// Draw N frames of one turn around the model, all at the same scale
     ///
-    /// Each frame is a file: {index} in the name of the output stands for its number, from 1, and
-    /// {index:03} writes that with three digits. Without it, -001 and so on come before the extension.
+    /// Each frame is a file. In the output name, {index} is the number of the frame, from 1, and {index:03}
+    /// writes it with three digits. Without {index}, -001 and so on are added before the extension.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     turntable: Option<u32>,
-    /// Draw a view for each row of a CSV file, all at one scale
+    /// Draw a view for each row of a CSV file, all at the same scale
     ///
-    /// The first row names camera options, as in azimuth,elevation. Empty fields, and options without
-    /// a column, are as on the command line. Vectors need quotes, as in "4,-3,2".
+    /// The first row names camera options, as in azimuth,elevation. Empty fields and missing columns use the
+    /// value from the command line. Vectors need quotes, as in "4,-3,2".
     #[arg(long, value_name = "FILE", conflicts_with_all = ["turntable", "camera"])]
     views: Option<PathBuf>,
-    /// Make a drawing of each model, not one of all
+    /// Make a separate drawing of each model
     ///
-    /// {stem} in the name of the output stands for the model's name without extension, {dir} for its
-    /// folder, and {index} for its number unless there are several views.
+    /// In the output name, {stem} is the model's file name without extension, {dir} its folder, and {index}
+    /// its number, unless there are several views.
     #[arg(long)]
     each: bool,
-    /// Read names of further models from a file, one a line or with NUL between them; `-` is standard
-    /// input
+    /// Read more model names from a file, one per line or separated by NUL; `-` is standard input
     #[arg(long, value_name = "FILE")]
     list: Option<PathBuf>,
-    /// Make only every N-th drawing, from the K-th on; `slurm` takes K and N from a Slurm job array
+    /// Make only every N-th drawing, starting with the K-th; `slurm` takes K and N from a Slurm job array
     ///
-    /// With --each it counts models, otherwise views. All shards together make all drawings.
+    /// With --each, it counts models, otherwise views. Together, the shards make all drawings.
     #[arg(long, value_name = "K/N")]
     shard: Option<ShardName>,
-    /// Leave out drawings whose file exists
+    /// Skip drawings whose output file exists
     #[arg(long)]
     skip_existing: bool,
-    /// Continue after a drawing that fails, and exit with 1 at the end
+    /// Continue after a drawing fails, and exit with status 1 at the end
     #[arg(long)]
     keep_going: bool,
 }
@@ -167,7 +165,7 @@ impl ManyArgs {
         let template = if has_frames { template.map(NameTemplate::numbered) } else { template };
         if n_all > 1 && template.is_none() {
             return Err(
-                "several drawings need names; give -o, as in -o 'out/{stem}-{index:03}.svg'".into(),
+                "several drawings need names; use -o, as in -o 'out/{stem}-{index:03}.svg'".into(),
             );
         }
         let inputs: HashSet<PathBuf> =
@@ -183,8 +181,8 @@ impl ManyArgs {
                 let path = template.as_ref().map(|t| t.name(model.unwrap_or(Path::new("")), index));
                 if let Some(path) = path.as_ref().filter(|path| !names.insert((*path).clone())) {
                     return Err(format!(
-                        "several drawings would be written to {}; give a name with {{stem}}, {{dir}} \
-                         or {{index}}, as in -o 'out/{{stem}}-{{index:03}}.svg'",
+                        "several drawings would be written to {}; use a name with {{stem}}, \
+                         {{dir}} or {{index}}, as in -o 'out/{{stem}}-{{index:03}}.svg'",
                         path.display()
                     )
                     .into());
@@ -196,7 +194,8 @@ impl ManyArgs {
                 if let Some(path) = path.as_ref().filter(|path| is_input(path)) {
                     return Err(Refused::Failed(
                         format!(
-                            "cannot write {}: it is read from and would be replaced; give another -o",
+                            "cannot write {}: it is an input file and would be replaced; use \
+                             another -o",
                             path.display()
                         )
                         .into(),
@@ -321,7 +320,7 @@ impl Tally {
             }
             n if many.keeps_going => Err(format!("{n_drawn} drawn, {n} failed{skipped}").into()),
             n => Err(format!(
-                "{n_drawn} drawn, {n} failed{skipped}; --keep-going draws the rest all the same"
+                "{n_drawn} drawn, {n} failed{skipped}; --keep-going draws the rest anyway"
             )
             .into()),
         }

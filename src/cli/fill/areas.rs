@@ -19,7 +19,7 @@ pub(super) struct AreaArgs {
     /// Direction toward the light [default: over the viewer's left shoulder]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
-    /// Where the light is, as a point
+    /// Position of the light: a point outside the model
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     #[arg(conflicts_with = "light")]
     light_at: Option<DVec3>,
@@ -32,7 +32,7 @@ pub(super) struct AreaArgs {
     #[arg(long, value_name = "COLOR", value_parser = values::rgb)]
     #[arg(default_value = "#d8d4c8")]
     paint: Rgb,
-    /// Use N grays only, or only these inks, as in 4 or navy,#e07020,ivory
+    /// Use only N grays, or only these inks, as in 4 or navy,#e07020,ivory
     ///
     /// Each face gets the nearest ink. Each ink is a layer, and inks never overlap.
     #[arg(long, value_name = "N|COLORS", value_parser = palette)]
@@ -40,16 +40,16 @@ pub(super) struct AreaArgs {
     /// Never let areas overlap, whatever the engine; implied by --palette
     #[arg(long)]
     disjoint: bool,
-    /// Width of the outline around each area, in its own color, that closes seams
+    /// Width of an outline around each area, in the same color, to close seams
     ///
-    /// Screens and printers smooth borders, so without it paper shines through between areas. 0 leaves
-    /// areas as they are, for cutters.
+    /// Screens and printers antialias edges, so without it paper shows through between areas. 0 leaves areas
+    /// unchanged, for cutters.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value_t = DEFAULT_SEAM_MM)]
     pub(super) seam: f64,
     /// Remove hidden lines by painting over them: faces in white from far to near, each with its edges
     ///
-    /// For screen and print only. On a plotter white paint covers nothing: it would draw all hidden
-    /// lines too, so plot the lines of `draw`. Engines: depth-sort, bsp (the default here), octree.
+    /// For screen and print only. A plotter cannot cover ink with white and would draw all hidden lines too,
+    /// so plot the lines of `draw` instead. Engines: depth-sort, bsp (the default here), octree.
     #[arg(long, conflicts_with_all = [
         "palette", "debug", "disjoint", "no_edges", "light", "light_at", "depth_cue", "paint", "leaf",
         "subdivision",
@@ -58,14 +58,14 @@ pub(super) struct AreaArgs {
     /// Color areas to show how the engine worked
     #[arg(long, value_name = "BY", value_parser = one_of_these(&DEBUGS), conflicts_with = "palette")]
     debug: Option<Coloring>,
-    /// Width of warnock's smallest windows on paper [default: that of the pen]
+    /// Width of the smallest windows of warnock, on paper [default: the pen width]
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     pub(super) leaf: Option<f64>,
     /// How warnock divides windows
     #[arg(long, value_name = "HOW", value_parser = one_of::<Subdivision>())]
     #[arg(default_value = Subdivision::Regular.name())]
     subdivision: Subdivision,
-    /// Make N pictures around the target, NAME-001 to NAME-N, all at one scale
+    /// Make N pictures around the target, NAME-001 to NAME-N, all at the same scale
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=999))]
     pub(super) turntable: Option<u16>,
 }

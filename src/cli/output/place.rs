@@ -1,4 +1,4 @@
-//! Whether the output may be written where it is to go.
+//! Whether the output file may be written.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,7 @@ pub(in crate::cli) fn check_place<P: AsRef<Path>>(
     let Ok(target) = fs::canonicalize(output) else {
         return missing_folder(output).map_or(Ok(()), |folder| {
             let (output, folder) = (output.display(), folder.display());
-            Err(failed(format!("cannot write {output}: there is no folder {folder}")))
+            Err(failed(format!("cannot write {output}: folder {folder} does not exist")))
         });
     };
     let is_target = |input: &Path| fs::canonicalize(input).is_ok_and(|input| input == target);
@@ -27,7 +27,7 @@ pub(in crate::cli) fn check_place<P: AsRef<Path>>(
         let input = input.as_ref();
         if !is_dash(input) && is_target(input) {
             return Err(failed(format!(
-                "cannot write {}: {} is read from and would be replaced; give another -o FILE",
+                "cannot write {}: {} is an input file and would be replaced; use another -o FILE",
                 output.display(),
                 input.display()
             )));

@@ -24,20 +24,20 @@ pub(super) struct PictureArgs {
     #[arg(long, value_name = "WHAT", value_parser = one_of::<Show>(), conflicts_with = "tone")]
     #[arg(default_value = Show::Shaded.name())]
     show: Show,
-    /// Show how light each point is, as gray from 0 to 255, with the shadows that `draw --hatch`
-    /// casts; the same as --show tone
+    /// Show the tone of each point as gray from 0 to 255, with the shadows of `draw --hatch`; the same as
+    /// --show tone
     #[arg(long, conflicts_with_all = ["paint", "edges"])]
     tone: bool,
-    /// Whether faces look flat or curved
+    /// Shade faces as flat or curved
     #[arg(long, value_enum, default_value = "flat")]
     shading: Shading,
-    /// With smooth shading, faces that meet at more than this angle keep their edge
+    /// With smooth shading, faces that meet at more than this angle keep a sharp edge
     #[arg(long, value_name = "DEG", value_parser = values::crease, default_value_t = 40.0)]
     smooth_angle: f64,
     /// Direction toward the light [default: over the viewer's left shoulder]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     light: Option<DVec3>,
-    /// Where the light is: a point outside the model
+    /// Position of the light: a point outside the model
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     #[arg(conflicts_with = "light")]
     light_at: Option<DVec3>,
@@ -54,12 +54,12 @@ pub(super) struct PictureArgs {
     /// Draw the visible lines on top
     #[arg(long)]
     pub(super) edges: bool,
-    /// Kinds of line for --edges, as for `draw`
+    /// Kinds of lines for --edges, as for `draw`
     #[arg(long, value_name = "KINDS", value_parser = values::KindsOfLine, requires = "edges")]
     #[arg(hide_possible_values = true)]
     #[arg(default_value = "silhouette,crease,boundary,nonmanifold,intersection,wire")]
     pub(super) lines: LineSelection,
-    /// Width of these lines in pixels
+    /// Width of the --edges lines in pixels
     #[arg(long, value_name = "PX", value_parser = values::positive, default_value_t = 1.5)]
     edge_width: f64,
     /// Fit the field of view instead of the scene
@@ -109,7 +109,7 @@ impl PictureArgs {
         }
         let shows_numbers = matches!(self.show, Show::Faces);
         if shows_numbers && self.engine == EngineName::ABuffer {
-            return Err("colors of faces cannot be mixed; give another --engine".into());
+            return Err("face colors cannot be mixed; use another --engine".into());
         }
         let pixels = match self.engine {
             EngineName::ABuffer => Pixels::Shares { opacity: self.opacity.unwrap_or(1.0) },

@@ -1,4 +1,4 @@
-//! What is typed after `hiddenline surface`, and what it means.
+//! The arguments of `hiddenline surface`, and the job that they describe.
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::draw::surface::{
@@ -39,10 +39,10 @@ Examples:
       --u 0:2*pi --v 0:2*pi -o torus.svg
       A surface in space.";
 
-/// Draw a surface z = f(x, y) by grid lines or level curves, the hidden parts removed
+/// Draw a surface z = f(x, y) as grid lines or level curves, with hidden lines removed
 ///
 /// The drawing is exact for the triangulated grid, from any viewpoint. Several formulas are drawn as
-/// sheets that hide each other; samples without a value are holes. Formulas know x, y, r and theta,
+/// sheets that hide each other; samples without a value are holes. Formulas can use x, y, r and theta,
 /// + - * / % ^, comparisons, && || !, c ? a : b, and functions such as sin, exp, sqrt, min.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
@@ -70,11 +70,11 @@ pub(in crate::cli) struct SurfaceArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 struct ExprArgs {
-    /// Formula of x, y, r and theta
+    /// Formula in x, y, r and theta
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     #[arg(required_unless_present_any = ["grid", "points", "parametric"])]
     expression: Option<String>,
-    /// Further formulas, one for each sheet
+    /// More formulas, one for each sheet
     #[arg(value_name = "EXPR")]
     more: Vec<String>,
     #[command(flatten)]
@@ -84,16 +84,16 @@ struct ExprArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Lines")]
 struct LineArgs {
-    /// Lines to draw, with commas between them [default: x,y,silhouette,border, but mesh with --points]
+    /// Lines to draw, separated by commas [default: x,y,silhouette,border; mesh with --points]
     ///
     /// x: grid lines along x (or u); y: along y (or v); both: x,y; levels: curves of equal height;
-    /// silhouette: where the surface folds away from the eye; border: its edges where no grid line runs;
-    /// intersection: where sheets cross; mesh: all edges of its triangles. The default draws the folds
-    /// of formulas only, and with --exact only grid lines.
+    /// silhouette: where the surface folds away from the eye; border: its edges, where no grid line runs;
+    /// intersection: where sheets cross; mesh: all edges of its triangles. By default, folds are drawn for
+    /// formulas only, and with --exact only grid lines are drawn.
     #[arg(long, value_enum, value_delimiter = ',')]
     lines: Vec<LineName>,
-    /// Level curves: how many, evenly spaced between the lowest and the highest point; their heights with
-    /// commas between them (`5,` is the height 5); every:STEP; or nothing for a round step
+    /// Level curves: how many, evenly spaced between the lowest and highest points; a list of heights (`5,`
+    /// is the height 5); every:STEP; or no value for a round step
     ///
     /// every:5:2 draws them at 2, 7, 12 and so on.
     #[arg(long, value_name = "N|LIST|every:STEP[:OFFSET]", value_parser = levels)]
@@ -102,29 +102,29 @@ struct LineArgs {
     /// Draw every N-th level curve as an index line, twice as wide [default: 5 with every:STEP]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     index_every: Option<u16>,
-    /// What is also drawn on the base of the box around the surface, as far as the surface does not hide it
+    /// Also draw these lines on the base of the box, where the surface does not hide them
     #[arg(long, value_enum, value_name = "LINES")]
     project: Option<ProjectName>,
-    /// Which level curves have their heights written into gaps [default: index or all from above]
+    /// Which level curves to label with their heights, in gaps [default: index or all from above]
     ///
-    /// In views from above without grid lines the default is index, or all where there are no index lines;
+    /// In views from above without grid lines the default is index, or all if there are no index lines;
     /// otherwise it is none.
     #[arg(long, value_enum)]
     labels: Option<LabelName>,
-    /// Which way up labels are
+    /// Orientation of labels
     #[arg(long, value_enum, default_value = "upright")]
     label_side: LabelSideName,
-    /// How level curves below 0 are drawn
+    /// How to draw level curves below 0
     #[arg(long, value_enum, default_value = "solid")]
     negative: Negative,
     /// Draw only every K-th line of a family, and the last one
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = at_least_one)]
     every: usize,
-    /// How far lines may deviate from the true curves, on paper; 0 draws the samples as they are
+    /// Maximum deviation of lines from the true curves, on paper; 0 draws the samples unchanged
     ///
-    /// Formulas are sampled as finely as that takes, which interval arithmetic proves, but only the lines
-    /// of --samples are drawn. Surfaces are left open at jumps and poles; 0 draws across them. Not used
-    /// with --engine floating-horizon or --lines mesh.
+    /// Formulas are sampled as finely as needed, which interval arithmetic proves, but only the lines of
+    /// --samples are drawn. Surfaces are left open at jumps and poles; 0 draws across them. Not used with
+    /// --engine floating-horizon or --lines mesh.
     #[arg(long, value_name = "MM", value_parser = values::length, default_value = "0.1")]
     smoothness: f64,
     /// Draw lines on the underside of the surface with their own pen and layer, `underside`
@@ -161,9 +161,9 @@ enum LabelName {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum LabelSideName {
-    /// To be read from below or from the right
+    /// Read from the bottom or the right of the page
     Upright,
-    /// With their tops uphill
+    /// Tops point uphill
     Uphill,
 }
 
@@ -171,7 +171,7 @@ enum LabelSideName {
 enum Negative {
     /// Like the others
     Solid,
-    /// With dashes
+    /// Dashed
     Dashed,
 }
 
@@ -206,7 +206,7 @@ fn levels(text: &str) -> Result<Levels, String> {
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|k| *k > 0).ok_or_else(|| "give a whole number above 0".to_owned())
+    text.parse().ok().filter(|k| *k > 0).ok_or_else(|| "expected a whole number above 0".to_owned())
 }
 
 impl SurfaceArgs {
@@ -217,7 +217,7 @@ impl SurfaceArgs {
         let texts = surface.expression.into_iter().chain(surface.more);
         let texts: Vec<String> = texts.map(|text| text.trim().to_owned()).collect();
         let sheets = surface.sheets.sheets(texts, DEFAULT_SAMPLES)?;
-        let mut sheets = sheets.ok_or("give a formula")?;
+        let mut sheets = sheets.ok_or("a formula is missing")?;
         let default_line = match sheets.input {
             SurfaceSource::Points(_) => LineName::Mesh,
             _ => LineName::Both,
@@ -231,10 +231,10 @@ impl SurfaceArgs {
         let only_grid_lines =
             named.iter().all(|n| matches!(n, LineName::X | LineName::Y | LineName::Both));
         if matches!(sheets.input, SurfaceSource::Points(_)) && (along_x || along_y) {
-            return Err("scattered points have no grid lines: give --lines mesh or levels".into());
+            return Err("scattered points have no grid lines: use --lines mesh or levels".into());
         }
         if lines.levels.is_some() && !has(LineName::Levels) {
-            return Err("--levels is for level curves: give --lines levels, too".into());
+            return Err("--levels is for level curves: add levels to --lines".into());
         }
         if !has(LineName::Levels)
             && (lines.index_every.is_some()
@@ -243,8 +243,8 @@ impl SurfaceArgs {
                 || lines.negative == Negative::Dashed)
         {
             return Err(
-                "--index-every, --project, --labels and --negative are for level curves: give \
-                 --lines levels, too"
+                "--index-every, --project, --labels and --negative are for level curves: add \
+                 levels to --lines"
                     .into(),
             );
         }
@@ -263,19 +263,19 @@ impl SurfaceArgs {
         match lines.engine {
             SurfaceEngine::FloatingHorizon if along_x == along_y || !only_grid_lines => {
                 return Err(
-                    "the floating horizon draws one family: give --lines x or --lines y".into()
+                    "the floating horizon draws one family: use --lines x or --lines y".into()
                 );
             }
             SurfaceEngine::FloatingHorizon if !is_grid => {
                 return Err(
                     "the floating horizon draws one surface z = f(x, y) over a rectangle: \
-                            give --engine roberts or auto"
+                            use --engine roberts or auto"
                         .into(),
                 );
             }
             SurfaceEngine::MaxMin if !one_sheet && !two_sheets => {
                 return Err("max-min draws one surface z = f(x, y), or two that meet along their \
-                            border: give --engine roberts or auto"
+                            border: use --engine roberts or auto"
                     .into());
             }
             SurfaceEngine::FloatingHorizon | SurfaceEngine::Roberts | SurfaceEngine::Appel

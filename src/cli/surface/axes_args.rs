@@ -1,4 +1,4 @@
-//! Axes, as they are typed.
+//! Axis options.
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::{Axes, AxesStyle, BoxFront, TickRule, Titles, ZAxis};
@@ -13,30 +13,30 @@ pub(in crate::cli) struct AxesArgs {
     /// Axes around the surface [default: edges, but frame in top views]
     #[arg(long, value_enum, value_name = "STYLE")]
     axes: Option<StyleName>,
-    /// Leave out axes and titles, as --axes none does; implied by --exact
+    /// Leave out axes and titles, like --axes none; implied by --exact
     #[arg(long, conflicts_with_all = ["title", "axis_titles", "axes"])]
     no_axes: bool,
     /// Edges of --axes box in front of the surface
     #[arg(long, value_parser = one_of::<BoxFront>(), default_value = BoxFront::Dashed.name())]
     box_front: BoxFront,
-    /// Side of the drawing where the z axis is
+    /// Side of the drawing with the z axis
     #[arg(long, value_parser = one_of::<ZAxis>(), default_value = ZAxis::Left.name())]
     z_axis: ZAxis,
-    /// Distance between ticks, for each axis; `90,,` is for x alone
+    /// Tick spacing for each axis; `90,,` sets it for x only
     #[arg(long, value_name = "X,Y,Z", value_parser = steps)]
     tick_step: Option<Steps>,
-    /// Axes whose ticks are at multiples of π, written with π
+    /// Axes with ticks at multiples of π, labeled with π
     #[arg(long, value_enum, value_delimiter = ',', value_name = "AXES")]
     ticks_pi: Vec<AxisName>,
     /// Title above the drawing
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     title: Option<String>,
-    /// Titles of the axes; `s^{-1}` raises and `x_{0}` lowers letters, `\,` is a comma in a title
+    /// Axis titles; `s^{-1}` is superscript, `x_{0}` is subscript, and `\,` is a comma in a title
     #[arg(long, value_name = "X,Y,Z", default_value = "x,y,z", value_parser = axis_titles)]
     #[arg(allow_hyphen_values = true)]
     axis_titles: AxisTitles,
-    /// Height of numbers in millimeters, or a length such as 0.1in; titles are a little higher
-    /// [default: to suit the page and the pen]
+    /// Height of numbers in millimeters, or a length such as 0.1in; titles are slightly larger [default: to
+    /// suit the page and the pen]
     #[arg(long, value_name = "MM", value_parser = values::positive_length)]
     text_height: Option<f64>,
 }
@@ -67,9 +67,9 @@ struct Steps([Option<f64>; 3]);
 
 /// Three titles with commas between them; `\,` is a comma in a title.
 fn axis_titles(text: &str) -> Result<AxisTitles, String> {
-    let titles = values::with_commas(text).try_into().map_err(|_| {
-        "give three titles of axes with commas between them; a comma in a title is written `\\,`"
-    })?;
+    let titles = values::with_commas(text).try_into().map_err(
+        |_| "expected three axis titles separated by commas; a comma in a title is written `\\,`",
+    )?;
     Ok(AxisTitles(titles))
 }
 
@@ -80,7 +80,8 @@ fn steps(text: &str) -> Result<Steps, String> {
         text => values::positive(text).map(Some),
     };
     let steps: Vec<Option<f64>> = text.split(',').map(step).collect::<Result<_, _>>()?;
-    let steps = steps.try_into().map_err(|_| "give three steps with commas, as in 90,,")?;
+    let steps =
+        steps.try_into().map_err(|_| "expected three steps separated by commas, as in 90,,")?;
     Ok(Steps(steps))
 }
 
@@ -90,7 +91,7 @@ impl AxesArgs {
         let style = match self.axes {
             _ if self.no_axes => return Ok(None),
             Some(StyleName::None) if self.title.is_some() => {
-                return Err("--axes none leaves out the title, too: give other --axes".into());
+                return Err("--axes none also leaves out the title: use other --axes".into());
             }
             Some(StyleName::None) => return Ok(None),
             Some(StyleName::Edges) => Some(AxesStyle::Edges),

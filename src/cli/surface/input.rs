@@ -1,4 +1,4 @@
-//! The surface that is drawn: read, sampled, scaled.
+//! The surface to draw: read, sampled, scaled.
 
 use std::error::Error;
 use std::io::{self, Read};
@@ -20,7 +20,7 @@ use crate::cli::plotting::Plotting;
 
 /// An error that other samples mend.
 pub(super) fn with_samples(error: &SurfaceError) -> String {
-    format!("{error}; give more --samples or another range by --x and --y")
+    format!("{error}; use more --samples or another range for --x and --y")
 }
 
 /// Where the surface comes from.
@@ -41,7 +41,7 @@ pub(in crate::cli) enum SurfaceSource {
     },
 }
 
-/// A surface as it is asked for.
+/// A surface as requested.
 pub(in crate::cli) struct SurfaceInput {
     pub(super) input: SurfaceSource,
     pub(super) options: HeightOptions,
@@ -73,7 +73,7 @@ fn noted(path: &Path, note: &HeightNote) -> String {
     let path = path.display();
     match note {
         HeightNote::LooksLikePoints { .. } => {
-            format!("{path}: {note}; if so, give --points {path} instead of --grid {path}")
+            format!("{path}: {note}; if so, use --points {path} instead of --grid {path}")
         }
         _ => format!("{path}: {note}"),
     }
@@ -96,8 +96,8 @@ fn with_lines(path: &Path, error: &PointsError, lines: &[usize]) -> String {
         PointsError::TwoHeights { points, x, y, heights: [a, b] } => {
             let [first, second] = points.map(|k| lines.get(k).copied().unwrap_or(0));
             format!(
-                "{path}:{first} and {path}:{second} are both at x = {x}, y = {y}, with heights {a} \
-                 and {b}; give --duplicates first, mean or max to keep one of them"
+                "{path}:{first} and {path}:{second} are both at x = {x}, y = {y}, with heights \
+                 {a} and {b}; use --duplicates first, mean or max to keep one of them"
             )
         }
         _ => format!("{path}: {error}"),
@@ -204,10 +204,10 @@ impl SurfaceInput {
         match error {
             SamplingError::NoHeights { outside_domain } => self.nothing_to_draw(*outside_domain),
             SamplingError::OutOfRange { low, high } => {
-                format!("the surface has heights from {low} to {high}: none of them is in --z")
+                format!("the surface has heights from {low} to {high}: none is within --z")
             }
             SamplingError::NotPositive { axis, .. } => {
-                format!("{error}; give another range by --{axis} or leave {axis} out of --log")
+                format!("{error}; use another range for --{axis} or leave {axis} out of --log")
             }
             _ => error.to_string(),
         }
@@ -238,15 +238,15 @@ impl SurfaceInput {
                 };
                 let (columns, rows) = samples;
                 format!(
-                    "no sample has a height: {what} at none of {columns} × {rows} samples of x in {} \
-                     and y in {}; give another range by --x and --y, or more --samples",
+                    "no sample has a height: {what} at none of {columns} × {rows} samples of x in \
+                     {} and y in {}; use another range for --x and --y, or more --samples",
                     range(x),
                     range(y)
                 )
             }
             SurfaceSource::Parametric { u, v, .. } => format!(
-                "no sample has a place in space: the formulas have no values for u in {} and v in \
-                 {}; give another range by --u and --v",
+                "no sample has a position: the formulas have no values for u in {} and v in {}; \
+                 use another range for --u and --v",
                 range(*u),
                 range(*v)
             ),
@@ -268,7 +268,7 @@ impl SurfaceInput {
         }
     }
 
-    /// The surface as a mesh, sampled as asked for.
+    /// The surface as a mesh, sampled as requested.
     pub(in crate::cli) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
         let mut warnings = Vec::new();
         let surface = self.read(&mut warnings)?;

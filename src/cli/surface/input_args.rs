@@ -1,4 +1,4 @@
-//! Where surfaces come from, as it is typed: for drawings, fills and pictures alike.
+//! Input options of surfaces, shared by drawings, fills and pictures.
 
 use std::path::PathBuf;
 
@@ -20,12 +20,12 @@ use crate::cli::values;
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 pub(in crate::cli) struct SurfaceInputArgs {
-    /// Heights from a file; `-` is standard input
+    /// Read heights from a file; `-` is standard input
     ///
     /// Rows of numbers, ESRI ASCII grid, NPY, NPZ, or a gray PNG or TIFF, recognized by content.
     #[arg(long, value_name = "FILE", conflicts_with = "expression")]
     grid: Option<PathBuf>,
-    /// Scattered points from a file with x, y and z on each line; `-` is standard input
+    /// Read scattered points from a file with x, y and z on each line; `-` is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["expression", "grid", "x", "y"])]
     points: Option<PathBuf>,
     /// Three formulas of u and v, for x, y and z
@@ -41,45 +41,45 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_name = "A:B", value_parser = range, allow_hyphen_values = true)]
     #[arg(requires = "parametric")]
     v: Option<(f64, f64)>,
-    /// Where the surface is, as a formula of x and y that is true there, such as x^2+y^2<=9
+    /// Domain of the surface, as a condition on x and y such as x^2+y^2<=9
     ///
-    /// The surface is cut along the border of this domain. `surface` draws the border with grid lines,
-    /// and by --lines border.
+    /// The surface is cut along the border of its domain. `surface` draws the border together with grid
+    /// lines, or with --lines border.
     #[arg(long = "where", value_name = "EXPR", requires = "expression")]
     domain: Option<String>,
-    /// Give a parameter of the formulas a value, as in a=2; can be given several times
+    /// Set a parameter of the formulas, as in a=2; may be repeated
     ///
-    /// The name is then a constant in all formulas and in --where. It must not be one that formulas
-    /// know already, such as x or pi.
+    /// The name is then a constant in all formulas and in --where. It must not be a name that formulas
+    /// already define, such as x or pi.
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["grid", "points"])]
     set: Vec<Parameter>,
-    /// Draw one sheet for each value of a parameter, as in a=1,2,3 or a=0:1:0.25; several multiply
+    /// Draw one sheet per value of a parameter, as in a=1,2,3 or a=0:1:0.25; repeat for all combinations
     ///
     /// a=FROM:TO:STEP takes evenly spaced values. The name is then a constant in all formulas and
-    /// conditions. In the names of sheets, {a} stands for its value. At most 32 sheets can be drawn.
+    /// conditions. In sheet names, {a} stands for the value. At most 32 sheets can be drawn.
     #[arg(long = "for", value_name = "NAME=VALUES", value_parser = parameter_list)]
     #[arg(allow_hyphen_values = true, conflicts_with_all = ["grid", "points", "parametric"])]
     for_each: Vec<ParameterList>,
-    /// Range of x; 5:-5 turns the axis around [default: -5:5, for a file 0 to columns - 1]
+    /// Range of x; 5:-5 reverses the axis [default: -5:5; for files, 0 to columns - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     x: Option<(f64, f64)>,
-    /// Range of y, as for x [default: -5:5, for a file 0 to rows - 1]
+    /// Range of y, as for x [default: -5:5; for files, 0 to rows - 1]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     y: Option<(f64, f64)>,
-    /// Range of heights, as for x; the surface is cut off outside [default: all, but for poles]
+    /// Range of heights, as for x; the surface is cut off outside it [default: all, except at poles]
     #[arg(long, value_name = "A:B", value_parser = either_way, allow_hyphen_values = true)]
     z: Option<(f64, f64)>,
     /// What to do with heights outside --z
     #[arg(long, value_parser = one_of::<Outside>(), default_value = Outside::Cut.name())]
     z_outside: Outside,
-    /// Samples along both axes, or along x and along y [default: 81, for `preview` 200]
+    /// Samples along each axis, or along x and along y [default: 81; for `preview`, 200]
     #[arg(long, value_name = "N|NxM", value_parser = samples, conflicts_with_all = ["grid", "points"])]
     samples: Option<(usize, usize)>,
-    /// The first row of the file is the one with the largest y
+    /// The first row of the file has the largest y
     #[arg(long, requires = "grid", conflicts_with_all = ["expression", "points", "parametric"])]
     flip_y: bool,
-    /// This height in the file means no data; such samples are holes, such points are left out
+    /// Height that means no data in the file; such samples become holes, and such points are left out
     #[arg(long, value_name = "HEIGHT", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["expression", "parametric"])]
     nodata: Option<f64>,
@@ -87,18 +87,18 @@ pub(in crate::cli) struct SurfaceInputArgs {
     #[arg(long, value_parser = one_of::<Duplicates>(), requires = "points")]
     #[arg(conflicts_with_all = ["expression", "grid", "parametric"])]
     duplicates: Option<Duplicates>,
-    /// Factor for all heights
+    /// Scale all heights by this factor
     #[arg(long, value_name = "FACTOR", value_parser = values::number, allow_hyphen_values = true)]
     #[arg(default_value_t = 1.0)]
     z_scale: f64,
-    /// Lengths of the box's edges: box, data, or proportions such as 4:4:3
+    /// Proportions of the box: box, data, or lengths such as 4:4:3
     ///
     /// box draws x and y to scale, and makes the box 0.4 times as high as the longer of the two; if one of
-    /// them is more than 5 times as long as the other, or logarithmic, both are equally long. data draws
-    /// all to scale. --z-scale applies on top. The default is box, but data with --parametric.
+    /// them is more than 5 times as long as the other, or logarithmic, both are equally long. data draws all
+    /// three to scale. --z-scale applies on top. The default is box, or data with --parametric.
     #[arg(long, value_name = "ASPECT", value_parser = aspect)]
     aspect: Option<Aspect>,
-    /// Logarithmic axes, such as x,z; formulas see true values
+    /// Logarithmic axes, such as x,z; formulas use the true values
     #[arg(long, value_enum, value_delimiter = ',', value_name = "AXES")]
     log: Vec<AxisName>,
 }
@@ -146,13 +146,13 @@ impl SurfaceInputArgs {
         } else if let Some(texts) = self.parametric {
             default_aspect = Aspect::Data;
             let formulas = parsed(&texts, Variables::Parameters, &parameters)?;
-            let formulas = formulas.try_into().map_err(|_| "give three formulas")?;
+            let formulas = formulas.try_into().map_err(|_| "expected three formulas")?;
             let (u, v) = (self.u.unwrap_or((0.0, 1.0)), self.v.unwrap_or((0.0, 1.0)));
             SurfaceSource::Parametric { formulas: Box::new(formulas), u, v, samples }
         } else if !texts.is_empty() {
             if texts.len() * combinations.len() > MAX_VALUES && !lists.is_empty() {
                 let n = texts.len() * combinations.len();
-                return Err(format!("--for makes {n} sheets; {MAX_VALUES} are the most"));
+                return Err(format!("--for makes {n} sheets; the limit is {MAX_VALUES}"));
             }
             let mut by_values = Vec::new();
             for parameters in &combinations {
@@ -188,8 +188,8 @@ impl SurfaceInputArgs {
                 || !lists.is_empty()
             {
                 return Err(
-                    "--x, --y, --z, --set, --for, --samples, --z-scale, --aspect and --log are for \
-                     surfaces: give --expr, --grid, --points or --parametric"
+                    "--x, --y, --z, --set, --for, --samples, --z-scale, --aspect and --log are \
+                     for surfaces: use --expr, --grid, --points or --parametric"
                         .into(),
                 );
             }
@@ -244,13 +244,13 @@ fn constant(text: &str) -> Result<f64, String> {
 
 /// A parameter of formulas as `a=2`; the value may be a formula such as `2*pi`.
 fn parameter(text: &str) -> Result<Parameter, String> {
-    let (name, value) = text.split_once('=').ok_or("give a name and a value, as in a=2")?;
+    let (name, value) = text.split_once('=').ok_or("expected a name and a value, as in a=2")?;
     Parameter::new(name.trim(), constant(value.trim())?).map_err(|error| error.to_string())
 }
 
 /// A parameter with its values as `a=1,2,3` or `a=0:1:0.25`; they may be formulas such as `pi/2`.
 fn parameter_list(text: &str) -> Result<ParameterList, String> {
-    let (name, values) = text.split_once('=').ok_or("give a name and values, as in a=1,2,3")?;
+    let (name, values) = text.split_once('=').ok_or("expected a name and values, as in a=1,2,3")?;
     let name = name.trim();
     let list = match values.split(':').collect::<Vec<_>>()[..] {
         [values] => {
@@ -266,7 +266,11 @@ fn parameter_list(text: &str) -> Result<ParameterList, String> {
         [from, to, step] => {
             ParameterList::evenly(name, constant(from)?, constant(to)?, constant(step)?)
         }
-        _ => return Err("give values as in a=1,2,3, or from, to and step as in a=0:1:0.25".into()),
+        _ => {
+            return Err(
+                "expected values as in a=1,2,3, or from, to and step as in a=0:1:0.25".into()
+            );
+        }
     };
     list.map_err(|error| error.to_string())
 }
@@ -297,7 +301,7 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 
 /// Two different numbers with a colon between them.
 fn either_way(text: &str) -> Result<(f64, f64), String> {
-    let (from, to) = text.split_once(':').ok_or("give two numbers, as in -2:2")?;
+    let (from, to) = text.split_once(':').ok_or("expected two numbers, as in -2:2")?;
     let (from, to) = (constant(from)?, constant(to)?);
     if from != to { Ok((from, to)) } else { Err("the two numbers must be different".into()) }
 }
@@ -312,7 +316,7 @@ fn aspect(text: &str) -> Result<Aspect, String> {
             let lengths = lengths.ok().and_then(|lengths| lengths.try_into().ok());
             lengths
                 .map(Aspect::Lengths)
-                .ok_or_else(|| "give box, data, or three lengths, as in 4:4:3".to_owned())
+                .ok_or_else(|| "expected box, data, or three lengths, as in 4:4:3".to_owned())
         }
     }
 }
@@ -320,13 +324,13 @@ fn aspect(text: &str) -> Result<Aspect, String> {
 /// Numbers of samples along x and y.
 fn samples(text: &str) -> Result<(usize, usize), String> {
     let number = |text: &str| {
-        let n = text.trim().parse::<usize>().map_err(|_| "give a number, as in 80 or 80x60")?;
+        let n = text.trim().parse::<usize>().map_err(|_| "expected a number, as in 80 or 80x60")?;
         if n < 2 { Err("at least 2 samples are needed") } else { Ok(n) }
     };
     let (x, y) = text.split_once('x').unwrap_or((text, text));
     let (x, y) = (number(x)?, number(y)?);
     if x.checked_mul(y).is_none_or(|n| n > MAX_SAMPLES) {
-        return Err(format!("{x} × {y} samples are more than {MAX_SAMPLES}"));
+        return Err(format!("{x} × {y} samples exceed the limit of {MAX_SAMPLES}"));
     }
     Ok((x, y))
 }

@@ -1,4 +1,4 @@
-//! A legend, as it is typed.
+//! Legend options.
 
 use clap::{Args, ValueEnum};
 use hiddenline::stages::axes::LegendPlace;
@@ -10,16 +10,16 @@ use crate::cli::values;
 #[derive(Args)]
 #[command(next_help_heading = "Axes")]
 pub(super) struct LegendArgs {
-    /// A legend of the sheets and levels, right of the drawing unless a place is given
+    /// Add a legend of sheets and levels, to the right of the drawing unless a place is given
     ///
-    /// Each of several sheets then has a pen of its own, 1, 2, 3 and so on. Sheets whose pens have the same
-    /// color and width are dashed.
+    /// If there are several sheets, each then has its own pen: 1, 2, 3 and so on. Sheets whose pens have the
+    /// same color and width are dashed.
     #[arg(long, value_enum, value_name = "PLACE")]
     legend: Option<PlaceName>,
-    /// Names of the sheets in the legend, with commas between them; `\,` is a comma in a name
+    /// Sheet names for the legend, separated by commas; `\,` is a comma in a name
     ///
-    /// {a} stands for the value of a parameter, as in --for a=1,2 --names "a = {a}". By default sheets have
-    /// their formulas for names, or the values of --for.
+    /// {a} stands for the value of a parameter, as in --for a=1,2 --names "a = {a}". By default sheets are
+    /// named by their formulas, or by the values of --for.
     #[arg(long, value_name = "NAMES", value_parser = names, allow_hyphen_values = true)]
     names: Option<Names>,
 }

@@ -16,7 +16,7 @@ use crate::cli::paper::Run;
 pub(in crate::cli) struct LiveSurface {
     surface: Surface,
     warnings: Vec<String>,
-    /// For turning, once that was asked for, with the lines that it is for.
+    /// For turning, once that was requested, with the lines that it is for.
     turning: Option<(String, TurningSurface)>,
 }
 

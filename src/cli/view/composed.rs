@@ -1,4 +1,4 @@
-//! Drawings as commands: what the page asks for is what could have been typed, and is drawn as that.
+//! Drawings as commands: the page requests what could have been typed, and it is drawn as such.
 
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
@@ -39,13 +39,13 @@ impl Composed {
         let subjects = values(if is_surface { "expression" } else { "models" });
         if !is_surface && subjects.is_empty() {
             return Err(
-                "give models, or a surface by --expr, --grid, --points or --parametric".into()
+                "specify models, or a surface with --expr, --grid, --points or --parametric".into(),
             );
         }
         let view = program.find_subcommand("view");
         let command = program.find_subcommand(name);
         let (Some(view), Some(command)) = (view, command) else {
-            return Err(format!("there is no command {name}"));
+            return Err(format!("unknown command {name}"));
         };
         let mut options = Options::new();
         for arg in view.get_arguments().filter(|arg| is_typed(arg.get_id().as_str())) {
@@ -63,11 +63,11 @@ impl Composed {
         Ok(Self { name, subjects, options })
     }
 
-    /// The same with the options that a page asks for in place of its own: an object with texts, numbers,
+    /// The same with the options that a page requests in place of its own: an object with texts, numbers,
     /// `true`, or lists of texts. Options that the page may not set stay as they are.
     pub(super) fn with(&self, command: &Command, asked: &Value) -> Result<Self, String> {
         let Some(asked) = asked.as_object() else {
-            return Err("`options` is not an object".into());
+            return Err("`options` must be an object".into());
         };
         let stays = |name: &str| option(command, name).is_some_and(|arg| !is_on_page(arg));
         let mut composed = self.clone();
@@ -79,11 +79,12 @@ impl Composed {
                 continue;
             }
             let arg = option(command, name).filter(|arg| is_on_page(arg));
-            let arg = arg.ok_or_else(|| format!("`{name}` is no option that a page can set"))?;
+            let arg =
+                arg.ok_or_else(|| format!("`{name}` is not an option that the page can set"))?;
             let Some(values) = texts(name, value)? else { continue };
             let (takes, needs) = (arg.get_action().takes_values(), !is_optional(arg));
             if values.is_empty() && takes && needs || !values.is_empty() && !takes {
-                return Err(format!("`{name}` has no value, or one where it takes none"));
+                return Err(format!("`{name}` lacks a value, or has one but takes none"));
             }
             composed.options.insert(name.clone(), values.into_iter().map(OsString::from).collect());
         }
@@ -177,7 +178,7 @@ fn texts(name: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
     let text = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Number(number) => Ok(number.to_string()),
-        _ => Err(format!("`{name}` is not a text, a number, true, or a list of texts")),
+        _ => Err(format!("`{name}` must be a string, a number, true, or a list of strings")),
     };
     Ok(match value {
         Value::Null | Value::Bool(false) => None,

@@ -40,7 +40,7 @@ enum Kind {
     Text,
     /// Texts, one a line.
     Texts,
-    /// So many texts together.
+    /// This many texts together.
     Several(usize),
 }
 

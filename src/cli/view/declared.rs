@@ -84,7 +84,7 @@ fn of_both(of_models: &Arg, of_surfaces: &Arg) -> Arg {
         text.unwrap_or_default()
     };
     let short = |arg: &Arg| arg.get_help().map(StyledStr::to_string).unwrap_or_default();
-    let both = format!("{}\n\nOf surfaces: {}", help(of_models), help(of_surfaces));
+    let both = format!("{}\n\nFor surfaces: {}", help(of_models), help(of_surfaces));
     let arg = of_models.clone().help(short(of_models)).long_help(both);
     if !arg.get_action().takes_values() {
         return arg;

@@ -1,4 +1,4 @@
-//! Why a request has no answer, with the place that it is about.
+//! Why a request failed, with the place of the error.
 
 use clap::error::{ContextKind, ContextValue};
 use hiddenline::stages::surface::formula::{Formula, FormulaError, Parameter, Problem, Variables};

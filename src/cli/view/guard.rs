@@ -87,7 +87,7 @@ pub(super) fn check(
         }
     }
     if headers.contains_key(header::TRANSFER_ENCODING) {
-        return Err(refusal(StatusCode::LENGTH_REQUIRED, "give the length of the body"));
+        return Err(refusal(StatusCode::LENGTH_REQUIRED, "the length of the body is missing"));
     }
     let length = match only(headers, &header::CONTENT_LENGTH)? {
         None => 0,
@@ -97,7 +97,7 @@ pub(super) fn check(
         return Err(refusal(StatusCode::PAYLOAD_TOO_LARGE, "the body is too long"));
     }
     if length > 0 && method != Method::POST {
-        return Err(refusal(StatusCode::BAD_REQUEST, "only POST has a body"));
+        return Err(refusal(StatusCode::BAD_REQUEST, "only POST requests have a body"));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `hiddenline view`: a page in the browser that shows the true drawing while one turns the model.
+//! `hiddenline view`: a page in the browser that shows the real drawing while the user turns the model.
 //!
 //! ```text
 //!   browser ◄─ HTTP on 127.0.0.1 ─► server, on the main thread
@@ -8,8 +8,8 @@
 //!                                                      studio ► the jobs of `draw` and `surface`
 //! ```
 //!
-//! What the page asks for is a command, and is drawn as if it had been typed: so every option of the
-//! command line is on the page, and what is saved has the bytes that the command would write.
+//! Each request of the page is a command, and is drawn as if it had been typed: so every option of the
+//! command line is on the page, and a saved file has the bytes that the command would write.
 
 mod composed;
 mod controls;
@@ -46,15 +46,15 @@ use super::{Refused, messages};
 const EXAMPLES: &str = "\
 Examples:
   hiddenline view bunny.stl
-      Turn it in the browser, choose what is drawn, and save the drawing.
+      Turn it in the browser, choose what to draw, and save the drawing.
   hiddenline view part.stl --hidden dashed --page a3 --watch
-      Begin with these settings, and draw anew whenever part.stl is saved.
+      Start with these settings, and redraw whenever part.stl is saved.
   hiddenline view --expr \"sin(r)/r\" --x=-12:12 --y=-12:12
-      A function surface; the formula can be changed on the page.
+      A function surface; you can change the formula on the page.
   hiddenline view --grid heights.tif --no-open --port 8000
       Print the address only.";
 
-/// Turn a model in the browser, with its hidden lines removed as you turn it
+/// Turn a model in the browser, with hidden lines removed as you drag
 ///
 /// Serves a page on 127.0.0.1 and opens it. The page shows the drawing that `draw` or `surface` would
 /// make, and the command for it. It starts with the options that are given here; all of them can be
@@ -66,13 +66,13 @@ pub(super) struct ViewArgs {
     #[arg(long, value_name = "PORT", help_heading = "Viewer", default_value_t = 0)]
     #[arg(hide_default_value = true)]
     port: u16,
-    /// Print the address, but open no browser
+    /// Print the address without opening a browser
     #[arg(long, help_heading = "Viewer")]
     no_open: bool,
-    /// Draw anew when a file that is shown changes
+    /// Redraw when a displayed file changes
     #[arg(long, help_heading = "Viewer")]
     watch: bool,
-    /// End when the page is closed
+    /// Exit when the page is closed
     #[arg(long, help_heading = "Viewer")]
     once: bool,
 }

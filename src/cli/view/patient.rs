@@ -1,4 +1,4 @@
-//! A connection that gives up on a reader who takes nothing for too long.
+//! A connection that gives up on a reader that accepts nothing for too long.
 
 use std::io;
 use std::pin::Pin;

@@ -1,4 +1,4 @@
-//! The point of a scene that is seen at a place of the image, for looking at it.
+//! The point of a scene at a place in the image, to become the target.
 
 use glam::{DVec2, DVec3};
 use hiddenline::stages::camera::{Camera, Projection};

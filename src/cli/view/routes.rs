@@ -119,7 +119,7 @@ async fn routed(request: Request<Incoming>, shared: &Arc<Shared>) -> Result<Answ
         }
         "/" | "/app.js" | "/app.css" | "/api/events" => not_allowed("GET"),
         "/api/draw" | "/api/file" | "/api/model" => not_allowed("POST"),
-        _ => json_answer(StatusCode::NOT_FOUND, &json!({ "error": "there is no such page" })),
+        _ => json_answer(StatusCode::NOT_FOUND, &json!({ "error": "no such page" })),
     })
 }
 
@@ -128,14 +128,14 @@ async fn asked(request: Request<Incoming>) -> Result<AskedJson, Refusal> {
     let bytes = body(request.into_body()).await?;
     let malformed = Refusal {
         status: StatusCode::BAD_REQUEST,
-        reason: "the body is no request: JSON with seq, camera, options and want or format",
+        reason: "the body must be JSON with seq, camera, options and want or format",
     };
     serde_json::from_slice(&bytes).map_err(|_| malformed)
 }
 
 /// All of a body whose length was checked.
 async fn body(mut incoming: Incoming) -> Result<Vec<u8>, Refusal> {
-    let slow = Refusal { status: StatusCode::REQUEST_TIMEOUT, reason: "the body does not come" };
+    let slow = Refusal { status: StatusCode::REQUEST_TIMEOUT, reason: "the body did not arrive" };
     let cut = Refusal { status: StatusCode::BAD_REQUEST, reason: "the body ends too early" };
     // A length that is promised is not yet memory.
     let promised = incoming.size_hint().lower().min(1 << 22);
@@ -154,7 +154,7 @@ async fn draw(asked: AskedJson, shared: &Shared) -> Answer {
     let work = match want.as_deref() {
         Some("drag") => Work::Drag(asked),
         Some("exact") => Work::Exact(asked),
-        _ => return failed(StatusCode::BAD_REQUEST, &Fault::of("`want` is drag or exact")),
+        _ => return failed(StatusCode::BAD_REQUEST, &Fault::of("`want` must be drag or exact")),
     };
     match shared.queue.push(&page, work).outcome().await {
         Outcome::Drawn(answer) => {
@@ -173,7 +173,7 @@ async fn file(asked: AskedJson, shared: &Shared) -> Answer {
     let known = |name: String| Format::ALL.into_iter().find(|format| format.name() == name);
     let Some(format) = format.and_then(known) else {
         let names = Format::ALL.map(Format::name).join(", ");
-        let fault = Fault::of(format!("`format` is one of {names}"));
+        let fault = Fault::of(format!("`format` must be one of {names}"));
         return failed(StatusCode::BAD_REQUEST, &fault);
     };
     let asked = Asked { seq, camera, options, pick_mm: None };
@@ -193,10 +193,7 @@ async fn model(name: String, bytes: Vec<u8>, shared: &Shared) -> Answer {
     // Only the name counts: it is shown, and says the format.
     let name = name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     if name.is_empty() || name == "-" || name.chars().any(char::is_control) {
-        return failed(
-            StatusCode::BAD_REQUEST,
-            &Fault::of("give the model a name: ?name=part.stl"),
-        );
+        return failed(StatusCode::BAD_REQUEST, &Fault::of("name the model, as in ?name=part.stl"));
     }
     other(shared.queue.push("", Work::Show(name, bytes)).outcome().await)
 }
@@ -262,7 +259,7 @@ impl Drop for Open {
 fn other(outcome: Outcome) -> Answer {
     match outcome {
         Outcome::Failed(fault) => failed(StatusCode::UNPROCESSABLE_ENTITY, &fault),
-        Outcome::Replaced => failed(StatusCode::CONFLICT, &Fault::of("a newer request came")),
+        Outcome::Replaced => failed(StatusCode::CONFLICT, &Fault::of("a newer request arrived")),
         Outcome::TooMany => {
             failed(StatusCode::SERVICE_UNAVAILABLE, &Fault::of("too many requests are waiting"))
         }

@@ -1,4 +1,4 @@
-//! The server: connections on 127.0.0.1, few, patient but not forever.
+//! The server: connections on 127.0.0.1, limited in number and in waiting time.
 
 use std::convert::Infallible;
 use std::io;
@@ -32,7 +32,7 @@ pub(super) async fn bind(port: u16) -> io::Result<TcpListener> {
     TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, port))).await
 }
 
-/// Serves until a signal asks for the end or, with `once`, the last page was closed.
+/// Serves until a signal requests the end or, with `once`, the last page was closed.
 pub(super) async fn serve(
     listener: TcpListener,
     shared: Arc<Shared>,

@@ -1,4 +1,4 @@
-//! What is shown, kept between drawings, and how requests of the page become drawings.
+//! The current subject, kept between drawings, and how requests of the page become drawings.
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -59,7 +59,7 @@ enum Job {
     Surface(Box<surface::Job>),
 }
 
-/// What a page asks for.
+/// What a page requests.
 pub(super) struct Asked {
     pub(super) seq: u32,
     /// The options of the camera; `None` for those that were typed.
@@ -98,7 +98,7 @@ impl Studio {
         self.ready(&typed, &job, &mut kept, Box::new(|_, _| ()))
     }
 
-    /// What a page must know before it asks for a drawing.
+    /// What a page must know before it requests a drawing.
     pub(super) fn description(&self) -> Value {
         let command = self.command(self.typed.name);
         let on_page = |name: &str| option(command, name).is_some_and(is_on_page);
@@ -260,7 +260,7 @@ impl Studio {
         if name == DRAW { draw } else { surface }
     }
 
-    /// What the page asks for as a command.
+    /// What the page requests as a command.
     fn composed(&self, asked: &Asked) -> Result<Composed, Fault> {
         let command = self.command(self.typed.name);
         let mut composed = self.typed.clone();
@@ -276,7 +276,7 @@ impl Studio {
             match given {
                 None => all.extend(typed),
                 Some(Value::Object(given)) => all.extend(given.clone()),
-                Some(_) => return Err(Fault::of("`camera` and `options` are objects")),
+                Some(_) => return Err(Fault::of("`camera` and `options` must be objects")),
             }
         }
         if asked.camera.is_some() {

@@ -1,4 +1,4 @@
-//! Files that are shown, looked at a few times a second: when one has changed, pages draw anew.
+//! Watches the displayed files, a few times a second: when one changes, pages redraw.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! The octets of a drawing: little-endian numbers of four bytes each, which the page views as arrays
-//! without copying.
+//! The bytes of a drawing: little-endian numbers of four bytes each, which the page views as arrays without
+//! copying.
 //!
 //! ```text
 //!   "HLV1"  seq  flags  groups  strokes  points

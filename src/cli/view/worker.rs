@@ -76,7 +76,7 @@ impl Ticket {
     /// Waits for the answer.
     pub(super) async fn outcome(mut self) -> Outcome {
         let lost =
-            |_| Outcome::Failed(Fault::of("the drawing failed; this is a bug of hiddenline"));
+            |_| Outcome::Failed(Fault::of("the drawing failed; this is a bug in hiddenline"));
         (&mut self.answer).await.unwrap_or_else(lost)
     }
 }
@@ -87,7 +87,7 @@ impl Drop for Ticket {
     }
 }
 
-/// What happens without being asked for: lines for one page, or for all.
+/// What happens without being requested: lines for one page, or for all.
 #[derive(Debug, Clone)]
 pub(super) struct Event {
     /// `None` is every page.

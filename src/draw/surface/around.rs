@@ -6,8 +6,8 @@
 //!          └───────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! Text is a few millimeters high whatever the scale, so that each layout is as large as the page that it
-//! was made for would have it; a few rounds settle that.
+//! Text is a few millimeters high whatever the scale, so each layout depends on the scale of the page that it
+//! was made for; a few rounds make them agree.
 
 use glam::{DVec2, DVec3};
 
@@ -33,7 +33,7 @@ const TEXT_HEIGHT: f64 = 0.01;
 /// Least and greatest height of numbers, in millimeters.
 const TEXT_HEIGHTS_MM: (f64, f64) = (1.8, 3.5);
 
-/// Least height of numbers as a multiple of the pen's width.
+/// Least height of numbers as a multiple of the pen width.
 const PEN_WIDTHS: f64 = 6.0;
 
 /// Text is made to take up less room if the drawing is smaller than this part of what it would be
@@ -77,7 +77,7 @@ impl Surroundings<'_> {
 /// and the page. `extent` is what the surface takes up.
 ///
 /// # Errors
-/// The page has no room, or a frame is asked for around a surface that is not seen as a map.
+/// The page has no room, or a frame is requested around a surface that is not seen as a map.
 pub fn surround(
     bounds: &AxesBox,
     extent: Extent,

@@ -12,29 +12,29 @@ use super::options::SurfaceLines;
 use crate::surface::formula::{Axis, Interval, JetGraph};
 use crate::surface::{Lattice, Places, SampledSurface, SheetJets};
 
-/// What is proved about a drawing of formulas.
+/// What is proven about a drawing of formulas.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Certificate {
     /// The greatest distance of a certified chord from the function, in millimeters on paper.
     pub bound_mm: f64,
     /// Chords of drawn lines.
     pub chords: usize,
-    /// Those of them that are not certified.
+    /// How many of these are not certified.
     pub uncertified_chords: usize,
     /// Cells between lines, each of two triangles, that hide what is behind them.
     pub cells: usize,
-    /// Those of them that are not certified.
+    /// How many of these are not certified.
     pub uncertified_cells: usize,
-    /// Places of drawn lines at which the surface is torn open.
+    /// Places on drawn lines where the surface is torn open.
     pub tears: usize,
     /// How often formulas were enclosed.
     pub jets: usize,
-    /// Where the first chord is that is not certified, by x and y or u and v.
+    /// The place of the first chord that is not certified, by x and y or u and v.
     pub first: Option<DVec2>,
 }
 
 impl Certificate {
-    /// Whether every chord of a drawn line is as close as was asked for.
+    /// Whether every chord of a drawn line is as close as requested.
     pub fn holds(&self) -> bool {
         self.uncertified_chords == 0
     }

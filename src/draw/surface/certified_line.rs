@@ -1,5 +1,5 @@
-//! One drawn line: whether its chords are as close to the function as asked for, and where samples must
-//! be closer for that.
+//! One drawn line: whether its chords are as close to the function as requested, and where more samples are
+//! needed for that.
 //!
 //! ```text
 //!   ├─┼─┼─┼─┼─┼─┼─┼─┤    one jet encloses eight cells at once; a block whose bound fails is halved

@@ -1,4 +1,4 @@
-//! Why a surface cannot be drawn, and what is worth knowing about a drawing.
+//! Why a surface cannot be drawn, and notes on a drawing.
 
 use thiserror::Error;
 
@@ -22,7 +22,7 @@ pub enum SurfaceError {
     /// The surface cannot be sampled.
     #[error(transparent)]
     Sampling(#[from] SamplingError),
-    /// The view makes no camera.
+    /// The view is not a valid camera.
     #[error(transparent)]
     View(#[from] ViewError),
     /// The drawing cannot be placed on the page.
@@ -39,12 +39,12 @@ pub enum SurfaceError {
     NoCells,
     /// Too many for an engine for meshes.
     #[error(
-        "the surface has {0} triangles, and its lines need an engine for meshes, which takes \
+        "the surface has {0} triangles, and its lines need a mesh engine, which takes at most \
          {MAX_TRIANGLES}"
     )]
     TooManyTriangles(u64),
-    /// More level curves than can be told apart.
-    #[error("{0:.0} level curves are more than {MAX_LEVELS}")]
+    /// More level curves than can be distinguished.
+    #[error("{0:.0} level curves exceed the limit of {MAX_LEVELS}")]
     TooManyLevels(f64),
     /// Level curves alone are to be drawn, and there are none.
     #[error(transparent)]
@@ -57,8 +57,8 @@ pub enum SurfaceError {
     OneGrid,
     /// Max-min cannot draw this surface.
     #[error(
-        "max-min draws one surface z = f(x, y) without holes over a convex part of the plane, or two \
-         that meet along their border, seen from outside and not cut by the near plane"
+        "max-min draws one surface z = f(x, y) without holes over a convex part of the plane, or \
+         two that meet along their border, seen from outside and not cut by the near plane"
     )]
     MaxMin,
     /// The near plane cuts the surface, and the engine cannot draw that.
@@ -66,12 +66,12 @@ pub enum SurfaceError {
     NearPlane,
     /// An order of cells was given for a surface that is not drawn cell by cell.
     #[error(
-        "an order of cells needs one surface z = f(x, y) over a rectangle without holes, drawn with \
-         grid lines only"
+        "an order of cells needs one surface z = f(x, y) over a rectangle without holes, drawn \
+         with grid lines only"
     )]
     Order,
-    /// A frame was asked for around a surface that is seen at an angle.
-    #[error("a frame needs a view from straight above or below, in parallel projection")]
+    /// A frame was requested around a surface that is seen at an angle.
+    #[error("a frame needs an orthographic view from straight above or below")]
     Frame,
 }
 
@@ -79,14 +79,14 @@ pub enum SurfaceError {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum NoLevels {
     /// All points have the same height.
-    #[error("the surface is level, {height} high everywhere: it has no level curves")]
+    #[error("the surface is flat at height {height}: it has no level curves")]
     Level {
         /// The height, rounded to six digits.
         height: f64,
     },
     /// None of the heights is one of the surface.
     #[error(
-        "the surface has heights from {low} to {high}: there is no level curve at any height given"
+        "the surface has heights from {low} to {high}: none of the given levels is in this range"
     )]
     OutOfRange {
         /// The lowest height, rounded to six digits.
@@ -100,11 +100,11 @@ pub enum NoLevels {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SurfaceNote {
-    /// Lines may be farther from the function than asked for, even with the finest samples.
+    /// Lines may be farther from the function than requested, even with the finest samples.
     #[error("{0}")]
     Uncertified(Certificate),
     /// The formula grows without end somewhere, so that only usual heights are drawn.
-    #[error("the formula grows without end; drawn are heights from {low} to {high}")]
+    #[error("the formula is unbounded; heights from {low} to {high} are drawn")]
     Poles {
         /// The lowest, before any scaling, rounded to six digits.
         low: f64,
@@ -112,28 +112,30 @@ pub enum SurfaceNote {
         high: f64,
     },
     /// Two sheets were joined at their common rim.
-    #[error("both sheets end at the same rim: {0} rim points took the mean height of the two")]
+    #[error(
+        "both sheets end at the same rim: {0} rim points were moved to the mean height of the two"
+    )]
     RimsJoined(usize),
     /// There are no level curves; other lines are drawn.
     #[error(transparent)]
     NoLevels(NoLevels),
     /// Level curves of some length without a label.
-    #[error("no room for a label on {} of the level curves: {}", .0.len(), .0.join(", "))]
+    #[error("no room for labels on {} of the level curves: {}", .0.len(), .0.join(", "))]
     Unlabelled(Vec<String>),
     /// Letters of titles that the font does not have.
-    #[error("the font has no {}: drawn as question marks", list(.0))]
+    #[error("the font lacks {}: drawn as question marks", list(.0))]
     MissingLetters(Vec<char>),
     /// Samples without a logarithm.
-    #[error("{0} samples are left out: a value on a logarithmic axis is not above 0")]
+    #[error("{0} samples are left out: values on a logarithmic axis must be above 0")]
     NotPositive(usize),
     /// Text takes up so much room that the drawing is small.
     #[error("numbers and titles leave little room for the drawing on this page")]
     LittleRoom,
-    /// Ticks at the steps asked for would be too many.
-    #[error("ticks at the given steps would be too many: an axis has others")]
+    /// Ticks at the requested steps would be too many.
+    #[error("the given steps would make too many ticks: an axis uses other steps")]
     TooManyTicks,
     /// There are more sheets than dashes for pens that look alike.
-    #[error("{0} sheets look like others: their pens have the same color and width")]
+    #[error("{0} sheets look like other sheets: their pens have the same color and width")]
     SheetsAlike(usize),
     /// The box around the surface reaches in front of the near plane.
     #[error("no axes are drawn, since the eye is too close to the box around the surface")]

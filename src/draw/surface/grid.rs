@@ -19,7 +19,7 @@ use crate::timing::{Seconds, timed};
 /// The grid, if it is all there is and an engine for grids is to draw it.
 ///
 /// # Errors
-/// That engine was asked for by name but cannot draw what the near plane leaves of the grid.
+/// That engine was requested by name but cannot draw what the near plane leaves of the grid.
 pub(super) fn grid_to_draw<'a>(
     surface: &'a SampledSurface,
     lines: &SurfaceLines,

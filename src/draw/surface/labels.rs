@@ -149,7 +149,7 @@ struct Line {
     /// Length up to each point.
     along: Vec<f64>,
     stroke_kind: StrokeKind,
-    /// The number of its level; 0 for lines that are no level curves.
+    /// The number of its level; 0 for lines that are not level curves.
     level: u16,
 }
 
@@ -225,7 +225,7 @@ impl Map {
         nearest.1
     }
 
-    /// Where a level may be labelled, the cheapest place first.
+    /// Where a level may be labeled, the cheapest place first.
     fn places(&self, level: u16, text: &str, rules: &Rules) -> Vec<Place> {
         let width = axes::text(text, rules.height).1;
         let is_long = self.total(level) > LABELLED_MM;
@@ -239,7 +239,7 @@ impl Map {
             {
                 continue;
             }
-            // The ends of an open curve stay, so that it can be seen to go on beyond the label.
+            // The ends of an open curve stay, so that it can be seen to continue beyond the label.
             let end = if line.is_closed() { 0.0 } else { 0.5 * width + rules.height };
             let n = ((length - 2.0 * end) / STEP_MM).floor();
             if n < 0.0 {
@@ -466,7 +466,7 @@ fn push_with_gaps(
         }
         start = start.max(to);
     }
-    // A closed stroke goes on where it began.
+    // A closed stroke continues where it began.
     if line.is_closed()
         && kept.len() > 1
         && gaps[0].0 > 0.0

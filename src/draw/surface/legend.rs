@@ -1,4 +1,4 @@
-//! What a legend of a surface says, and the dashes by which it tells sheets apart.
+//! The text of a legend of a surface, and the dashes that distinguish sheets.
 
 use super::dashes::Pattern;
 use super::levels::LevelSet;

@@ -5,7 +5,7 @@ use super::error::{MAX_LEVELS, SurfaceError};
 use super::options::{Levels, SurfaceLines};
 use crate::surface::{AxisScale, SampledSurface};
 
-/// Every n-th level is an index line if levels have a step, unless set otherwise.
+/// Every n-th level is an index line if levels have a step, by default.
 const DEFAULT_INDEX_EVERY: u16 = 5;
 
 /// About this many levels are drawn if only a round step is wanted.

@@ -1,4 +1,4 @@
-//! Which lines of a surface are drawn, and how.
+//! Which lines of a surface to draw, and how.
 
 use crate::axes::{Axes, LegendPlace};
 use crate::draw::DEFAULT_SHORTEST_STROKE_MM;
@@ -6,14 +6,14 @@ use crate::engines::surface::CellOrder;
 use crate::page::{DEFAULT_PEN_WIDTH_MM, PenRule};
 use crate::surface::SampledSurface;
 
-/// How far lines may deviate from the true curves, in millimeters on paper, unless set otherwise.
+/// The default deviation of lines from the true curves, in millimeters on paper.
 pub const DEFAULT_SMOOTHNESS_MM: f64 = 0.1;
 
 /// Which lines of a surface are drawn, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceLines {
-    /// Grid lines along x, or along u. Scattered points have no grid lines: instead of them, the edges
-    /// of their triangles are drawn.
+    /// Grid lines along x, or along u. Scattered points have no grid lines: the edges of their triangles are
+    /// drawn instead.
     pub along_x: bool,
     /// Grid lines along y, or along v.
     pub along_y: bool,
@@ -21,44 +21,44 @@ pub struct SurfaceLines {
     pub every: usize,
     /// Level curves.
     pub levels: Option<Levels>,
-    /// Every n-th level curve is an index line, of kind index and by default twice as wide. `None` stands
-    /// for every fifth if the levels have a step, and for none otherwise.
+    /// Every n-th level curve is an index line, of kind index and by default twice as wide. `None` means
+    /// every fifth if the levels have a step, and none otherwise.
     pub index_every: Option<u16>,
-    /// Draw the level curves on the base of the box around the surface, too, as far as it does not hide them.
+    /// Also draw the level curves on the base of the box around the surface, where it does not hide them.
     pub project_levels: bool,
     /// Dash the level curves of heights below 0.
     pub negative_dashed: bool,
-    /// Which level curves have their heights written into gaps. `None` stands for the index lines, or all
-    /// curves where there are no index lines, in views from above without grid lines, and for none in other
+    /// Which level curves are labeled with their heights, in gaps. `None` means the index lines, or all
+    /// curves if there are no index lines, in views from above without grid lines, and none in other
     /// drawings.
     pub labels: Option<Labels>,
-    /// Which way up labels are.
+    /// Orientation of labels.
     pub label_side: LabelSide,
     /// Height of the digits of labels, in millimeters; less where there is no room.
     pub label_height_mm: f64,
-    /// Where the surface folds away from the eye: the folds of formulas, unless all is drawn exactly as
-    /// sampled; otherwise edges of triangles.
+    /// Where the surface folds away from the eye: the folds of formulas, unless everything is drawn exactly
+    /// as sampled; otherwise edges of triangles.
     pub silhouette: bool,
     /// The border.
     pub border: bool,
-    /// What closes grid lines of both families: the folds of formulas, and the border where no grid line
-    /// runs along it. Not if all is drawn exactly as sampled.
+    /// The edges that complete grid lines of both families: the folds of formulas, and the border where no
+    /// grid line runs along it. None if everything is drawn exactly as sampled.
     pub edges: bool,
-    /// Lines in which sheets cross.
+    /// Lines where sheets cross.
     pub intersections: bool,
     /// All edges of all triangles.
     pub mesh: bool,
-    /// How far lines may deviate from the true curves, in millimeters on paper; 0 draws them as
-    /// sampled. Formulas are sampled as finely as that takes, and torn open at jumps and poles; only the
-    /// lines of its own samples are drawn. The floating horizon and `mesh` ignore it.
+    /// Maximum deviation of lines from the true curves, in millimeters on paper; 0 draws them as sampled.
+    /// Formulas are sampled as finely as needed, and left open at jumps and poles; only the lines of their
+    /// own samples are drawn. The floating horizon and `mesh` ignore it.
     pub smoothness_mm: f64,
-    /// Keep lines on the underside of the surface apart.
+    /// Keep lines on the underside of the surface separate.
     pub underside: bool,
     /// Draw what is exactly visible, as one two-point stroke for each visible piece of each edge.
     pub exact: bool,
     /// The engine that decides what is visible.
     pub engine: SurfaceEngine,
-    /// In which order [`max_min`](crate::engines::surface::max_min) visits the cells of a grid; the
+    /// The order in which [`max_min`](crate::engines::surface::max_min) visits the cells of a grid; the
     /// drawing is the same. `None` for the default order, or for surfaces that are not a single grid.
     pub order: Option<CellOrder>,
     /// Axes around the surface; `None` for no axes.
@@ -143,7 +143,7 @@ impl SurfaceLines {
         Self { index_every: Some(n), ..self }
     }
 
-    /// Level curves on the base of the box around the surface, too.
+    /// Also level curves on the base of the box around the surface.
     #[must_use]
     pub fn project_levels(self) -> Self {
         Self { project_levels: true, ..self }
@@ -173,20 +173,20 @@ impl SurfaceLines {
         Self { border: true, ..self }
     }
 
-    /// Nothing but the lines asked for: no folds and no border that close grid lines.
+    /// Only the requested lines: no folds and no border to complete the grid lines.
     #[must_use]
     pub fn without_edges(self) -> Self {
         Self { edges: false, ..self }
     }
 
-    /// Lines in which sheets cross.
+    /// Lines where sheets cross.
     #[must_use]
     pub fn intersections(self) -> Self {
         Self { intersections: true, ..self }
     }
 
-    /// How far lines may deviate from the true curves, in millimeters on paper; 0 draws the
-    /// samples as they are.
+    /// Maximum deviation of lines from the true curves, in millimeters on paper; 0 draws the samples
+    /// unchanged.
     #[must_use]
     pub fn smoothness_mm(self, smoothness_mm: f64) -> Self {
         Self { smoothness_mm, ..self }
@@ -198,7 +198,7 @@ impl SurfaceLines {
         Self { axes: None, ..self }
     }
 
-    /// Axes, or the usual ones with these titles.
+    /// These axes, or the default axes with these titles.
     ///
     /// ```
     /// use hiddenline::{Axes, AxesStyle, SurfaceLines, Titles};
@@ -211,7 +211,7 @@ impl SurfaceLines {
         Self { axes: Some(axes.into()), ..self }
     }
 
-    /// A legend of the sheets and levels; sheets whose pens look alike have dashes.
+    /// A legend of the sheets and levels; sheets whose pens look alike are dashed.
     ///
     /// ```
     /// use hiddenline::{Legend, LegendPlace, Levels, SurfaceLines};
@@ -224,7 +224,7 @@ impl SurfaceLines {
         Self { legend: Some(legend.into()), ..self }
     }
 
-    /// The visible-line algorithm; all give the same lines.
+    /// The hidden-line algorithm; all give the same lines.
     #[must_use]
     pub fn engine(self, engine: SurfaceEngine) -> Self {
         Self { engine, ..self }
@@ -257,15 +257,15 @@ impl SurfaceLines {
     }
 }
 
-/// A legend: which line is which sheet, and how far apart levels are.
+/// A legend: which line belongs to which sheet, and the interval between levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Legend {
     /// Where it is.
     pub place: LegendPlace,
-    /// Which pens draw what: sheets whose pens are equally wide and of one color are dashed. Set by
+    /// Which pens draw which strokes: sheets whose pens have the same width and color are dashed. Set by
     /// [`SurfaceDrawing`](crate::SurfaceDrawing).
     pub pens: Vec<PenRule>,
-    /// Width of the line of pens without a rule, in millimeters.
+    /// Line width of pens without a rule, in millimeters.
     pub pen_width_mm: f64,
 }
 
@@ -281,10 +281,10 @@ impl From<LegendPlace> for Legend {
     }
 }
 
-/// Height of the digits of labels, in millimeters, unless set otherwise.
+/// The default height of the digits of labels, in millimeters.
 pub const DEFAULT_LABEL_HEIGHT_MM: f64 = 2.0;
 
-/// Which level curves are labelled with their heights.
+/// Which level curves are labeled with their heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Labels {
     /// None of them.
@@ -295,19 +295,19 @@ pub enum Labels {
     All,
 }
 
-/// Which way up labels are.
+/// Orientation of labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LabelSide {
-    /// To be read from below or from the right.
+    /// Read from the bottom or the right of the page.
     Upright,
-    /// With their tops uphill.
+    /// Tops point uphill.
     Uphill,
 }
 
 /// Which level curves are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Levels {
-    /// This many, evenly spaced between the lowest and the highest point.
+    /// This many, evenly spaced between the lowest and highest points.
     Count(u16),
     /// At these heights, before any scaling.
     At(Vec<f64>),
@@ -325,7 +325,7 @@ pub enum Levels {
 /// The engines for surfaces.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum SurfaceEngine {
-    /// Max-min where it applies, otherwise one for meshes.
+    /// Max-min where it applies, otherwise a mesh engine.
     #[default]
     Auto,
     /// One surface z = f(x, y) without holes, or two that meet along their border.

@@ -1,9 +1,9 @@
-//! How finely formulas are sampled, so that drawn lines are as smooth as asked for.
+//! How finely formulas are sampled, so that drawn lines are as smooth as requested.
 //!
 //! Enclosures of the formulas say for each piece of a drawn line how far it can be from the function on
-//! paper. Where that is too far, columns and rows of samples are added; own lines remain the only ones
-//! that are drawn. Heights that are found in this way may change the scale of the drawing, so that the
-//! search is repeated a few times.
+//! paper. Where that is too far, columns and rows of samples are added; but only the original lines are
+//! drawn. Heights that are found in this way may change the scale of the drawing, so the search is repeated a
+//! few times.
 
 use super::bound::PaperBound;
 use super::certificate::{Certificate, Certifier, Needs};
@@ -42,7 +42,7 @@ pub(super) struct SmoothSurface {
     /// How close its lines are to the formulas; none if nothing is to be proved.
     pub(super) certificate: Option<Certificate>,
     /// The heights that are drawn, as coordinates before any is multiplied, if others grow without end or
-    /// are not asked for.
+    /// are not requested.
     pub(super) heights: Option<(f64, f64)>,
 }
 

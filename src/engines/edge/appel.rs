@@ -30,7 +30,7 @@
 //!   of triangles (module `parity`). A contradiction would be a defect of the program; it is counted, and
 //!   [`roberts`] takes the edges concerned.
 //!
-//! Lines of intersection go to [`roberts`]: their ends are on triangles, so each would need its own sight
+//! Intersection lines go to [`roberts`]: their ends are on triangles, so each would need its own sight
 //! line.
 //!
 //! Triangles that the near plane cuts are tested one by one, as in Roberts's algorithm. In near contact

@@ -1,4 +1,4 @@
-//! Lines thrown onto faces: what of a view's drawn lines lies in front of each triangle.
+//! Lines cast onto faces: which parts of the drawn lines of a view lie in front of each triangle.
 //!
 //! ```text
 //!      light ☼

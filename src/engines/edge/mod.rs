@@ -1,9 +1,10 @@
-//! Line engines: which parts of each drawn edge are hidden, and by how many triangles.
+//! Line engines: which spans of each drawn edge are hidden, and by how many triangles (quantitative
+//! invisibility).
 //!
 //! | engine | tests each edge against | cost |
 //! |---|---|---|
 //! | [`roberts`] | every triangle whose image is near | edges × triangles near them |
-//! | [`appel`] | contours in front, triangles near in space | edges × contours near them |
+//! | [`appel`] | cutting edges in front, triangles near in space | edges × cutting edges near them |
 //!
 //! All engines answer the same question and find the same intervals:
 //!
@@ -36,21 +37,21 @@ use crate::engines::visibility::Visibility;
 /// Options that every line engine obeys.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VisibilityOptions {
-    /// A triangle does not cover a segment both of whose ends lie within this distance of its
-    /// plane, in model units. Zero: contact is exact.
+    /// A triangle does not cover a segment if both ends lie within this distance of its plane, in model
+    /// units. Zero: contact is exact.
     pub contact_tolerance: f64,
-    /// Whether `qi` is counted in full. Otherwise it is 1 wherever something hides, which lets
-    /// an engine stop at the first thing that does.
+    /// Whether `qi` is counted in full. Otherwise it is 1 wherever any triangle hides the point, which lets
+    /// an engine stop at the first one.
     pub count_layers: bool,
-    /// Whether to find the parts that a nearer drawn edge with the same image draws already.
+    /// Whether to find the parts that a nearer drawn edge with the same image already draws.
     pub find_doubled: bool,
-    /// When [`appel`] leaves out what certainly lies behind a surface. The visible parts are the same
-    /// either way.
+    /// When [`appel`] culls lines and triangles that certainly lie behind a surface. The visible parts are
+    /// the same either way.
     pub occlusion_culling: OcclusionCulling,
 }
 
 impl VisibilityOptions {
-    /// The default: contact is exact, layers are not counted, doubled parts not looked for.
+    /// The default: contact is exact, layers are not counted, and doubled parts are not searched for.
     pub const EXACT: Self = Self {
         contact_tolerance: 0.0,
         count_layers: false,
@@ -59,8 +60,8 @@ impl VisibilityOptions {
     };
 }
 
-/// When occlusion culling is tried. It is out of the question where layers are counted or the near
-/// plane cuts the scene.
+/// When occlusion culling is tried. It is never used where layers are counted or the near plane cuts the
+/// scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum OcclusionCulling {
     /// Where it is likely to save time: in large scenes of which many edges are drawn.
@@ -80,14 +81,15 @@ pub enum LineEngine {
     Auto,
     /// Every edge against the triangles near its image.
     Roberts,
-    /// Counts carried along edges, changed at contours: fast where many edges are drawn.
+    /// Quantitative invisibility carried along edges, changed at cutting edges: fast where many edges are
+    /// drawn.
     Appel,
-    /// Every edge against every triangle: slow, and so simple that it checks the others.
+    /// Every edge against every triangle: slow, but simple enough to check the others.
     AllPairs,
 }
 
 impl LineEngine {
-    /// Those to choose from; all pairs are for tests.
+    /// The engines to choose from; all pairs are for tests.
     pub const ALL: [Self; 3] = [Self::Auto, Self::Roberts, Self::Appel];
 
     /// The name on the command line.
@@ -103,7 +105,7 @@ impl LineEngine {
 
 /// Finds the spans of all drawn edges of `view`, in their order.
 ///
-/// Also returns which engine did it, by its name on the command line, and how much work it was.
+/// Also returns the name of the engine on the command line, and how much work it did.
 pub fn solve(
     view: &ViewedScene,
     engine: LineEngine,
@@ -118,7 +120,7 @@ pub fn solve(
     (visibility, counts, name)
 }
 
-/// The engine that [`LineEngine::Auto`] stands for.
+/// The engine that [`LineEngine::Auto`] chooses.
 ///
 /// Appel, except for scenes with fewer than [`SMALL_SCENE`] triangles and fewer drawn edges than
 /// triangles: there, finding cutting edges and nearby triangles would be most of Appel's work.
@@ -128,19 +130,19 @@ fn fastest(view: &ViewedScene) -> LineEngine {
     if is_small { LineEngine::Roberts } else { LineEngine::Appel }
 }
 
-/// Scenes with fewer triangles are small. Measured: at 3,700 triangles Roberts takes half of Appel's
-/// time, at 60,000 both take the same, at a million Appel takes four fifths of Roberts' time for
-/// contours and two fifths of it for all edges.
+/// Scenes with fewer triangles are small. Measured: at 3,700 triangles Roberts takes half of Appel's time, at
+/// 60,000 both take the same, at a million Appel takes four fifths of Roberts' time for silhouettes and two
+/// fifths of it for all edges.
 const SMALL_SCENE: usize = 1 << 14;
 
 /// How much work an engine did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LineCounts {
-    /// Pairs of an edge and a triangle (or contour edge) that were tested.
+    /// Pairs of an edge and a triangle (or cutting edge) that were tested.
     pub candidate_pairs: u64,
-    /// Pairs of an edge and a contour edge among them.
+    /// Pairs of an edge and a cutting edge among them.
     pub contour_crossings: u64,
-    /// Edges handed to [`roberts`].
+    /// Edges passed to [`roberts`].
     pub fallback_edges: u64,
     /// Edges whose counts contradict others. Always zero unless the program has a bug.
     pub checksum_failures: u64,

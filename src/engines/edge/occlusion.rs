@@ -10,7 +10,7 @@
 //! # Why a covered cell has no gap
 //!
 //! Start with a triangle whose image holds a certain point of the cell. Follow the sides that come near the
-//! cell: wherever one has as many triangles on its left as on its right, add them all, and go on until
+//! cell: wherever one has as many triangles on its left as on its right, add them all, and continue until
 //! nothing is added. Now walk from there to any point of the cell. At each side that is crossed, as
 //! many of the added triangles begin as end; so at least one of them lies over every point of the cell,
 //! and on both sides of every line through it. Behind the deepest point of the added triangles nothing
@@ -46,11 +46,11 @@ use rayon::prelude::*;
 /// Scenes with fewer triangles are fast without culling.
 const MIN_TRIANGLES: usize = 1 << 14;
 
-/// Culling is tried when there is more than one drawn line for so many triangles: for contours alone
+/// Culling is tried when there is more than one drawn line for this many triangles: for contours alone
 /// it costs more than it saves.
 const TRIANGLES_PER_LINE: usize = 2;
 
-/// Culling is given up when fewer than one of so many cells with a surface in them is covered.
+/// Culling is given up when fewer than one of this many cells with a surface in them is covered.
 const CELLS_PER_COVERED: usize = 4;
 
 /// What may show, of the lines and triangles of a view.

@@ -1,4 +1,4 @@
-//! Outlines: the parts of edges that are seen against the background only.
+//! Outlines: the parts of edges seen only against the background.
 //!
 //! ```text
 //!          ┌────────┐

@@ -1,4 +1,4 @@
-//! A drawn line as the engines see it: its ends, what the near plane leaves of it, its image.
+//! A drawn line as the engines see it: its ends, its part beyond the near plane, and its image.
 
 use crate::classify::ViewedScene;
 use crate::predicates::Cut;
@@ -9,7 +9,7 @@ use glam::DVec2;
 pub(super) struct Segment {
     /// Its number among the lines of the scene.
     pub edge: u32,
-    /// Its end points, in the direction of the parameter.
+    /// Its endpoints, in the direction of the parameter.
     pub ends: [u32; 2],
     /// Where the kept part begins.
     pub from: Cut,

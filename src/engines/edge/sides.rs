@@ -55,7 +55,7 @@ impl<'a> Sides<'a> {
             .all(|side| self.table.uses(side).len().is_multiple_of(2))
     }
 
-    /// The triangles along an edge, each with whether it runs along it upwards.
+    /// The triangles along an edge, each with whether it runs along it upward.
     pub(super) fn along_edge(
         &self,
         view: &ViewedScene,
@@ -73,7 +73,7 @@ impl<'a> Sides<'a> {
         self.table.find_edge(p, q)
     }
 
-    /// The triangles along a side, each with whether it runs along it upwards.
+    /// The triangles along a side, each with whether it runs along it upward.
     pub(super) fn along(&self, side: u32) -> impl Iterator<Item = (u32, bool)> {
         self.table.uses(side).iter().map(|along| (along.face(), along.runs_upwards()))
     }

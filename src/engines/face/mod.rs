@@ -11,7 +11,7 @@
 //! | [`bsp`] | planes of others | all views | few piercings |
 //! | [`octree`] | octants, then as bsp | all views | large faces that hide much |
 //!
-//! These three order [`fragment`]s exactly, however often they are cut; [`piercing`] estimates beforehand
+//! These three sort [`fragment`]s exactly, however often they are cut; [`piercing`] estimates in advance
 //! whether that would be too often.
 
 pub mod bsp;
@@ -85,7 +85,7 @@ impl FaceEngine {
     }
 }
 
-/// Why an engine does not begin.
+/// Why an engine does not run.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FaceError {
     /// It would take too long.
@@ -95,7 +95,7 @@ pub enum FaceError {
         engine: &'static str,
         /// How many there are.
         n: usize,
-        /// How many it takes.
+        /// How many it takes at most.
         most: usize,
     },
     /// It would take too long.
@@ -105,18 +105,18 @@ pub enum FaceError {
     TooManyPairs {
         /// The engine.
         engine: &'static str,
-        /// How many it takes.
+        /// How many it takes at most.
         most: u64,
     },
     /// The leaves are too small.
-    #[error("{n:.0} leaves are too many; {most:.0} are the most")]
+    #[error("{n:.0} leaves are too many; the limit is {most:.0}")]
     TooManyLeaves {
         /// How many there are.
         n: f64,
         /// How many there may be.
         most: f64,
     },
-    /// The faces are cut into too many pieces.
+    /// The faces are cut into too many fragments.
     #[error(transparent)]
     TooManyFragments(#[from] TooManyFragments),
     /// Sorting would take too long, or finds no order.
@@ -125,7 +125,7 @@ pub enum FaceError {
 }
 
 impl FaceError {
-    /// Engines that take such a scene, the best first; none where a setting is to be changed instead.
+    /// Engines that can handle such a scene, the best first; none where a setting should be changed instead.
     pub fn instead(&self) -> &'static [FaceEngine] {
         use depth_sort::DepthSortError;
         match self {
@@ -143,7 +143,7 @@ impl FaceError {
     }
 }
 
-/// Options of single engines.
+/// Options for individual engines.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FaceOptions {
     /// Width of a leaf in image units, for [`FaceEngine::Warnock`]; `None` to suit the image.
@@ -161,7 +161,7 @@ pub const MOST_EXACT: usize = 6_000;
 pub struct Prepared<'a> {
     scene: &'a Scene,
     engine: FaceEngine,
-    /// Whether another engine may replace this one where it would take too long.
+    /// Whether another engine may replace this one if it would take too long.
     is_free: bool,
     trees: Trees,
 }
@@ -175,10 +175,10 @@ enum Trees {
 }
 
 impl<'a> Prepared<'a> {
-    /// Chooses the engine and does what does not depend on the view.
+    /// Chooses the engine and does all work that does not depend on the view.
     ///
-    /// [`FaceEngine::Auto`] means [`FaceEngine::Warnock`] for masses of faces that pierce each other, which
-    /// the others would cut into millions of fragments; otherwise see [`MOST_EXACT`].
+    /// [`FaceEngine::Auto`] means [`FaceEngine::Warnock`] for many faces that pierce each other, which the
+    /// others would cut into millions of fragments; otherwise see [`MOST_EXACT`].
     ///
     /// # Errors
     /// [`FaceError::TooManyFragments`].
@@ -209,8 +209,8 @@ impl<'a> Prepared<'a> {
         self.scene
     }
 
-    /// The visible regions as a camera sees them, and the work it took to find them; the work of building
-    /// a tree is counted in each view.
+    /// The visible regions as a camera sees them, and the work of finding them; the work of building a tree
+    /// is counted in each view.
     ///
     /// # Errors
     /// See [`FaceError`]; all are found before the work begins, except those of [`depth_sort`] that say

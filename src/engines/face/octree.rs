@@ -4,7 +4,7 @@
 //!      ┌───────┬───┬───┐          faces are cut where octants meet; an octant with few fragments
 //!      │       │   ┊   │          is a leaf with its own tree of planes;
 //!      │   2   ├───┼───┤  3       seen from below left, quarter 0 may hide 1 and 2, these may
-//!      │       │   ┊   │          hide 3: the order of painting is 3, 2, 1, 0, decided for each
+//!      │       │   ┊   │          hide 3: the paint order is 3, 2, 1, 0, decided for each
 //!      ├───────┼───┴───┤          octant by where the eye is relative to its center
 //!      │   0   │   1   │
 //!      └───────┴───────┘

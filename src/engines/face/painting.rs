@@ -1,4 +1,4 @@
-//! What face engines find: polygons in the image, each a piece of one face.
+//! The answer of the face engines: polygons in the image, each a fragment of one face.
 //!
 //! ```text
 //!  piece 0        piece 1                 a piece has one outer ring, counter-clockwise,
@@ -88,7 +88,7 @@ impl Painting {
         self.pieces.is_empty()
     }
 
-    /// The pieces in the order of painting.
+    /// The pieces in the paint order.
     pub fn pieces(&self) -> impl ExactSizeIterator<Item = PaintedPiece<'_>> {
         (0..self.pieces.len()).map(|number| {
             let first_ring = match number.checked_sub(1) {

@@ -5,7 +5,7 @@
 //! sorted by the distance of their nearest points. The first one, P, clips the others into a list I of
 //! the parts inside it and a list O of the parts outside. The parts of I behind P are hidden; if nothing
 //! is left of I, all of P is visible. Otherwise the sorting was wrong there, and I is processed first in
-//! the same way. Then the algorithm goes on with O.
+//! the same way. Then the algorithm continues with O.
 //!
 //! ```text
 //!        ┌──────┐ Q

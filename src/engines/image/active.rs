@@ -52,7 +52,7 @@ impl EdgeTable {
         Self { waiting, active: Vec::new(), width: raster.width() }
     }
 
-    /// The edges that a row meets, from left to right. Rows must be asked for in their order.
+    /// The edges that a row meets, from left to right. Rows must be requested in their order.
     pub(super) fn advance(&mut self, row: u32) -> &[ActiveEdge] {
         self.active.retain_mut(|active| {
             active.x += active.edge.slope();

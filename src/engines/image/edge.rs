@@ -17,7 +17,7 @@ use glam::DVec2;
 
 use crate::predicates::{Sign, orient2d};
 
-/// An edge in pixels that runs downwards.
+/// An edge in pixels that runs downward.
 #[derive(Debug, Clone, Copy)]
 pub struct PixelEdge {
     upper: DVec2,

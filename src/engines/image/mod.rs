@@ -24,7 +24,7 @@
 //! All engines answer the same question, so all give the same picture:
 //!
 //! - A pixel shows what its *center* shows; the pixel in column `i` of row `j` has its center at
-//!   (i + ½, j + ½), x to the right and y downwards (see [`raster`]).
+//!   (i + ½, j + ½), x to the right and y downward (see [`raster`]).
 //! - A triangle covers a center when the ray from it to the left crosses the triangle's border an
 //!   odd number of times. An edge that runs from `a` down to `b` is crossed when
 //!   `a.y ≤ y < b.y` and the center is right of the edge or on it (see [`edge`]). So a center on a

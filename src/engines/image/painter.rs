@@ -29,7 +29,7 @@ use crate::model::scene::Scene;
 )]
 pub struct NoOrder;
 
-/// The picture whose items are in the order of painting. O(triangles log triangles) usually; see
+/// The picture whose items are in the paint order. O(triangles log triangles) usually; see
 /// [`depth_sort`].
 ///
 /// # Errors

@@ -26,7 +26,7 @@ use crate::predicates::{Sight, Sign};
 /// need more memory.
 pub const STRIP_ROWS: u32 = 16;
 
-/// The map from the image (y upwards) to pixels (y downwards).
+/// The map from the image (y upward) to pixels (y downward).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelMap {
     /// Pixels for a unit of the image.

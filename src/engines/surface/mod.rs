@@ -1,4 +1,4 @@
-//! Engines for function surfaces z = f(x, y). They differ in what hides.
+//! Engines for function surfaces z = f(x, y). They differ in what hides lines.
 //!
 //! | engine | draws | hides by | cost |
 //! |---|---|---|---|

@@ -14,7 +14,7 @@
 /// Steps in a strip. Fewer are coarser than cells; more cost more to find.
 const STEPS: usize = 128;
 
-/// Heights count outwards: upwards for an upper horizon, downwards for a lower one.
+/// Heights count outwards: upward for an upper horizon, downward for a lower one.
 #[derive(Clone)]
 pub(super) struct Steps {
     start: f64,

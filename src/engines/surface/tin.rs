@@ -297,7 +297,7 @@ impl TinPart {
         for (v, outside) in corners.into_iter().zip(outside) {
             let u = self.vertices[v as usize].u;
             // What is beyond x comes in at u = −1, what is beyond y at u = 1; the eye's foot, whose u
-            // is no number, is next to all.
+            // is not a number, is next to all.
             let (low, high) = match outside {
                 (false, false) if !u.is_nan() => (u, u),
                 (true, false) => (-1.0, -1.0),

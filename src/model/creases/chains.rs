@@ -1,4 +1,4 @@
-//! Creases of grown models: chains of bent edges that are long and strong enough on paper.
+//! Creases of organic models: chains of bent edges that are long and strong enough on paper.
 
 use rayon::prelude::*;
 
@@ -10,13 +10,13 @@ use super::looseness::model;
 use super::surroundings::bend_nearby;
 use super::{CreaseAngle, along, angle, length, looseness};
 
-/// Edges that turn more than this, in degrees, do not go on into each other.
+/// Edges that turn more than this, in degrees, do not continue into each other.
 const MAX_TURN_DEG: f64 = 45.0;
 
-/// In grown models, chains shorter than this on paper are left out, in millimeters.
+/// In organic models, chains shorter than this on paper are left out, in millimeters.
 const SHORTEST_MM: f64 = 3.0;
 
-/// In grown models, chains weaker than this are left out, in degrees above half the crease angle times
+/// In organic models, chains weaker than this are left out, in degrees above half the crease angle times
 /// millimeters, for each degree of the crease angle.
 const STRENGTH_MM: f64 = 10.0 / 3.0;
 
@@ -146,7 +146,7 @@ impl CreaseChains {
 
 /// The angle above which edges of a model may be part of a chain.
 struct LowThreshold {
-    /// How much the model is a grown one.
+    /// How organic the model is.
     grown: f64,
     degrees: f64,
     angle: CreaseAngle,
@@ -161,7 +161,7 @@ fn excess_deg(scene: &Scene, edge: u32, low: &LowThreshold) -> f64 {
     (excess_deg - low.degrees).max(-low.degrees)
 }
 
-/// For each end of each candidate, numbered `2 · candidate + side`, the end it goes on into: at each
+/// For each end of each candidate, numbered `2 · candidate + side`, the end it continues into: at each
 /// vertex the straightest first.
 fn straightest(scene: &Scene, candidates: &[ChainLink]) -> Vec<u32> {
     let cos_turn = libm::cos(MAX_TURN_DEG.to_radians());

@@ -1,4 +1,4 @@
-//! Was a model constructed or grown?
+//! Whether a model is constructed or organic.
 //!
 //! ```text
 //!      ●──────●                 Creases of a constructed model bound faces: they close, and none

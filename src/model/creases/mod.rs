@@ -1,11 +1,11 @@
 //! Creases: edges at which a model is bent enough for a line.
 //!
 //! In a constructed model (CAD, cities, spacecraft) creases bound faces, and every edge above the crease
-//! angle is one. In a model that was grown (scans, sculptures, terrain) edges bend by chance, and a
-//! crease is a chain of edges that stands out from its surroundings:
+//! angle is one. In an organic model (scans, sculptures, terrain) edges bend by chance, and a crease is
+//! a chain of edges that stands out from its surroundings:
 //!
 //! ```text
-//!   scene ─► looseness: constructed or grown? ─► chains of edges, with length and strength
+//!   scene ─► looseness: constructed or organic? ─► chains of edges, with length and strength
 //!                                                        │ millimeters on paper
 //!                                                        ▼
 //!                                              creases of a view
@@ -24,7 +24,7 @@ use super::looseness::Looseness;
 use super::scene::Scene;
 use super::topology::EdgeUse;
 
-/// Whether the models of a scene were constructed or grown, by their creases. Measured when first asked
+/// Whether the models of a scene are constructed or organic, by their creases. Measured when first asked
 /// for; O(edges).
 pub fn looseness(scene: &Scene) -> &Looseness {
     scene.looseness_or(looseness::measure)

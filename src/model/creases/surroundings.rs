@@ -1,8 +1,8 @@
 //! How bent a surface is around an edge.
 //!
-//! The lines between the facets of a rounded body have neighbors that are bent as much as they are; a
-//! crease has not. So one walks straight over the surface, at right angles to the edge, and looks at
-//! the edges on the way:
+//! The lines between the facets of a rounded body have neighbors that are bent as much as they are; a crease
+//! does not. So this walks straight over the surface, at right angles to the edge, and looks at the edges
+//! along the way:
 //!
 //! ```text
 //!        ╲     │ edge ╱
@@ -85,7 +85,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// Over the face to its other side: where the walk goes on, how far that is, and the angle there,
+    /// Over the face to its other side: where the walk continues, how far that is, and the angle there,
     /// or zero if the bend is in the other sense. `None` at the end of the surface.
     fn step(&self, scene: &Scene) -> Option<(Self, f64, f64)> {
         let (topology, mesh) = (scene.topology(), scene.mesh());

@@ -6,8 +6,8 @@
 //!      touches            │ crosses         cross.
 //! ```
 //!
-//! A box on a table touches it: there the box's own edge is drawn, if any. A wall that goes on
-//! below the floor crosses it, also where the floor happens to run along edges of the wall.
+//! A box on a table touches it: there the box's own edge is drawn, if any. A wall that continues below the
+//! floor crosses it, even where the floor happens to run along edges of the wall.
 
 use super::pair::{Along, End, Piece};
 use crate::predicates::{Sign, Solid};

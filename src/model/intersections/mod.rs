@@ -6,7 +6,7 @@
 //!                touch           in common           cross            the same planes
 //! ```
 //!
-//! A line of intersection runs where two faces that do not lie in one plane cross. There is none
+//! An intersection line runs where two faces that do not lie in one plane cross. There is none
 //! where they only touch (a box standing on a table has its own edges there), where they share an
 //! edge, or where they lie in one plane. What two planar faces share is one line, however they are
 //! cut into triangles.

@@ -17,7 +17,7 @@ use super::diagonals::Diagonals;
 use crate::predicates::{QuickPlane, Sign, Solid};
 use glam::DVec3;
 
-/// Where a line of intersection ends, by vertex numbers; sides have the lower number first.
+/// Where an intersection line ends, by vertex numbers; sides have the lower number first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum End {
     /// At a vertex.

@@ -14,7 +14,7 @@ const SINGLE_SPACING: f64 = 1.0 / (1 << 22) as f64;
 /// The same for double precision.
 const DOUBLE_SPACING: f64 = 1.0 / (1u64 << 51) as f64;
 
-/// How far a coordinate may be from what its author meant, in model units.
+/// How far a coordinate may be from its intended value, in model units.
 ///
 /// Positions that are singles (exactly, or rounded to the decimals they have) came through single
 /// precision. Otherwise two units in the last decimal place count, taken from the coordinates within

@@ -138,7 +138,7 @@ impl Corners {
     }
 }
 
-/// A flat region is a face of its own beside others that are so many times smaller: fillets.
+/// A flat region is a face of its own beside others that are this many times smaller: fillets.
 const MUCH_LARGER: f64 = 10.0;
 
 /// The largest flat region of a fan, and how large the next one is.

@@ -33,7 +33,7 @@ pub(super) fn middle_normal(along: DVec3, [n_a, n_b]: [DVec3; 2]) -> DVec3 {
     (sum - 2.0 * along.dot(sum) / squared * along).normalize_or_zero()
 }
 
-/// The middle of a crease or border from `a` to `b` with these unit tangents at its ends, both towards
+/// The middle of a crease or border from `a` to `b` with these unit tangents at its ends, both toward
 /// `b`. Exact on circles.
 pub(super) fn curve_middle([a, b]: [DVec3; 2], [t_a, t_b]: [DVec3; 2]) -> DVec3 {
     let length = a.distance(b);
@@ -42,10 +42,10 @@ pub(super) fn curve_middle([a, b]: [DVec3; 2], [t_a, t_b]: [DVec3; 2]) -> DVec3 
     0.5 * (a + b) + if bend.is_finite() { bend } else { DVec3::ZERO }
 }
 
-/// A straight line goes on into a curve where its piece is this many times as long as the curve's.
+/// A straight line continues into a curve where its piece is this many times as long as the curve's.
 const STRAIGHT: f64 = 3.0;
 
-/// The tangent at `v` of the circle through three points, from `before` towards `after`; `None` where the
+/// The tangent at `v` of the circle through three points, from `before` toward `after`; `None` where the
 /// turn is larger than `cos_turn` says. A much longer side is straight, and the tangent that of it.
 pub(super) fn circle_tangent([before, v, after]: [DVec3; 3], cos_turn: f64) -> Option<DVec3> {
     let (a, b) = (v - before, after - v);

@@ -7,9 +7,9 @@
 //!   ●───────────●
 //! ```
 //!
-//! The curved surface bulges over an edge as a circle does: circles, cylinders and spheres come out as
-//! such. PN triangles (Vlachos et al., *Curved PN Triangles*, 2001) have the same form with a factor of
-//! one instead of `bulge`'s, and miss a circle.
+//! The curved surface bulges over an edge as a circle does, so circles, cylinders and spheres become round.
+//! PN triangles (Vlachos et al., *Curved PN Triangles*, 2001) have the same form with a factor of one instead
+//! of `bulge`'s, and miss a circle.
 //!
 //! The refined mesh is a mesh like any other: all decisions are exact for its vertices.
 
@@ -23,7 +23,8 @@ use crate::model::triangulate::triangulate;
 use self::fans::Corners;
 use self::refine::Refinement;
 
-/// Most rounds of splitting. Each splits the edges that need it, and makes new ones across triangles.
+/// The maximum number of rounds of splitting. Each splits the edges that need it, and makes new ones across
+/// triangles.
 const MAX_ROUNDS: usize = 12;
 
 /// Refinement stops before there are more triangles than this.
@@ -32,10 +33,9 @@ const MAX_TRIANGLES: usize = 4_000_000;
 /// Which parts of a mesh are smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SmoothParts {
-    /// What the model's own vertex normals say; nothing in models without any.
+    /// Parts that are smooth according to the model's vertex normals; none in models without normals.
     ByNormals,
-    /// Faces that meet at no more than this angle in degrees; where the model has vertex normals, they
-    /// decide.
+    /// Faces that meet at this angle in degrees or less; where the model has vertex normals, they decide.
     Below(f64),
 }
 
@@ -44,16 +44,15 @@ pub enum SmoothParts {
 pub struct Smoothed {
     /// Triangles before and after; equal when nothing is curved.
     pub triangles: [usize; 2],
-    /// The largest distance between an edge's middle and the curved surface that is left, in model
-    /// units.
+    /// The largest remaining distance between an edge midpoint and the curved surface, in model units.
     pub farthest: f64,
-    /// Whether the limit of triangles ended the refinement.
+    /// Whether refinement stopped at the limit of triangles.
     pub is_cut_short: bool,
 }
 
 /// Refines the smooth parts of a mesh to a tolerance in model units.
 ///
-/// Flat faces stay as they are, and a mesh without curved parts comes back unchanged. Every round takes
+/// Flat faces stay as they are, and a mesh without curved parts is returned unchanged. Every round takes
 /// O(triangles log triangles).
 ///
 /// # Errors

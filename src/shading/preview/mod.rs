@@ -31,7 +31,7 @@ use crate::shading::light::{DEFAULT_PAINT, LightError, LightSource, to_bytes};
 use crate::strokes::Strokes;
 use crate::timing::{Seconds, timed};
 
-/// Columns and rows of a picture, unless set otherwise.
+/// Columns and rows of a picture, by default.
 pub const DEFAULT_SIZE: (u32, u32) = (1200, 900);
 
 /// More columns or rows than this are refused.
@@ -87,7 +87,7 @@ impl Show {
 }
 
 impl Show {
-    /// The color where no face is seen, unless set otherwise.
+    /// The color where no face is seen, by default.
     fn background(self) -> [u8; 3] {
         match self {
             Self::Shaded | Self::Tone => [255; 3],
@@ -148,7 +148,7 @@ pub enum PreviewError {
     /// The painter cannot order the faces.
     #[error(transparent)]
     NoOrder(#[from] painter::NoOrder),
-    /// The light makes no shadows.
+    /// The light cannot cast shadows.
     #[error(transparent)]
     Light(#[from] LightError),
     /// The stream failed.

@@ -16,14 +16,14 @@ pub struct Parameter {
     text: String,
 }
 
-/// Why a name or a value makes no parameter.
+/// Why a name or a value cannot be a parameter.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ParameterError {
-    /// Not letters and digits that begin with a letter.
-    #[error("`{0}` cannot name a parameter; take letters and digits that begin with a letter")]
+    /// Not letters and digits starting with a letter.
+    #[error("`{0}` cannot name a parameter; use letters and digits, starting with a letter")]
     Name(String),
     /// A variable, constant, function or operator.
-    #[error("`{0}` has a meaning in formulas already; take another name")]
+    #[error("`{0}` already has a meaning in formulas; use another name")]
     Taken(String),
     /// Infinite, or not a number.
     #[error("the value of `{0}` must be finite")]
@@ -34,7 +34,7 @@ pub enum ParameterError {
     /// More than [`MAX_VALUES`](super::MAX_VALUES).
     #[error("parameters have more than {} values or combinations of values", super::MAX_VALUES)]
     TooMany,
-    /// Even steps that lead nowhere.
+    /// Steps that do not lead to the last value.
     #[error("the steps of `{0}` do not lead from its first to its last value")]
     Step(String),
     /// Two lists of values for one name.
@@ -42,7 +42,7 @@ pub enum ParameterError {
     Twice(String),
 }
 
-/// Significant digits of values as they are written.
+/// Significant digits of values as written.
 const DIGITS: usize = 10;
 
 impl Parameter {
@@ -73,13 +73,13 @@ impl Parameter {
         Ok(Self { name: known.clone(), value, text: (rounded + 0.0).to_string() })
     }
 
-    /// The same with its value written in another way, such as pi/2.
+    /// The same parameter with another text for its value, such as pi/2.
     #[must_use]
     pub fn written(self, text: &str) -> Self {
         Self { text: text.to_owned(), ..self }
     }
 
-    /// The name, in lowercase: formulas do not tell cases apart.
+    /// The name, in lowercase: formulas are not case-sensitive.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -89,7 +89,7 @@ impl Parameter {
         self.value
     }
 
-    /// The value as it is written: with at most ten digits, unless it was given a text.
+    /// The value as text: at most ten digits, unless another text was set.
     pub fn text(&self) -> &str {
         &self.text
     }

@@ -2,14 +2,14 @@
 
 use super::parameter::{Parameter, ParameterError};
 
-/// Most values, and most combinations of the values of several lists.
+/// The maximum number of values, and of combinations of the values of several lists.
 pub const MAX_VALUES: usize = 32;
 
 /// The last value of evenly spaced ones is the end of their range if the rest is less than this part of a
 /// step, so that 0, 0.1 … ends with 0.3 although the sum is rounded.
 const REST: f64 = 1e-9;
 
-/// A name and the values that it takes one after the other.
+/// A name and the values that it takes one after another.
 ///
 /// ```
 /// use hiddenline::ParameterList;
@@ -27,17 +27,16 @@ impl ParameterList {
     /// A parameter with given values.
     ///
     /// # Errors
-    /// As [`Parameter::new`]; or there are no values, or more than [`MAX_VALUES`].
+    /// As for [`Parameter::new`]; or there are no values, or more than [`MAX_VALUES`].
     pub fn new(name: &str, values: impl IntoIterator<Item = f64>) -> Result<Self, ParameterError> {
         let parameters = values.into_iter().map(|value| Parameter::new(name, value));
         Self::of(parameters.collect::<Result<_, _>>()?)
     }
 
-    /// A parameter with the values from `from` to `to`, `step` apart; a last step that is shorter is left
-    /// out.
+    /// A parameter with the values from `from` to `to`, `step` apart; a shorter last step is left out.
     ///
     /// # Errors
-    /// As [`new`](Self::new); or the step does not lead from `from` to `to`.
+    /// As for [`new`](Self::new); or the step does not lead from `from` to `to`.
     pub fn evenly(name: &str, from: f64, to: f64, step: f64) -> Result<Self, ParameterError> {
         let steps = (to - from) / step;
         if !(steps >= 0.0 && steps.is_finite()) {
@@ -58,7 +57,7 @@ impl ParameterList {
     /// One parameter's values, as they are.
     ///
     /// # Errors
-    /// There are none, or more than [`MAX_VALUES`].
+    /// There are no values, or more than [`MAX_VALUES`].
     #[doc(hidden)]
     pub fn of(parameters: Vec<Parameter>) -> Result<Self, ParameterError> {
         match parameters.len() {

@@ -27,9 +27,9 @@ pub struct HeightOptions {
     pub x: Option<(f64, f64)>,
     /// y of the first and the last row from the smallest y up, in place of the file's own.
     pub y: Option<(f64, f64)>,
-    /// Reverses the order of the rows. It makes no difference to a file that gives the y of each row.
+    /// Reverses the order of the rows. It has no effect on a file that gives the y of each row.
     pub flip_y: bool,
-    /// This height, as written in the file, is a hole, besides the one that the file itself names.
+    /// This height, as written in the file, is a hole, in addition to the one that the file itself names.
     /// For heights of single precision it is rounded to single precision first.
     pub nodata: Option<f64>,
 }
@@ -60,16 +60,16 @@ impl HeightOptions {
     }
 }
 
-/// Heights that were read.
+/// A height field as read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightField {
     /// The samples.
     pub grid: Grid,
-    /// What is worth knowing about the file.
+    /// Notes about the file.
     pub notes: Vec<HeightNote>,
 }
 
-/// What was skipped in a height file, or looks wrong there.
+/// What was skipped in a height file, or looks wrong in it.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum HeightNote {
     /// Lines before the first row of numbers.
@@ -160,7 +160,7 @@ pub enum HeightError {
     #[cfg(feature = "npz")]
     #[error("NPZ: {0}")]
     Unpack(#[from] std::io::Error),
-    /// An NPZ file whose arrays make no height field.
+    /// An NPZ file whose arrays do not form a height field.
     #[cfg(feature = "npz")]
     #[error("NPZ: {0}")]
     Npz(String),
@@ -172,11 +172,11 @@ pub enum HeightError {
     #[cfg(feature = "tiff")]
     #[error("TIFF: {0}")]
     Tiff(#[from] ::tiff::TiffError),
-    /// The format is left out of this build.
+    /// The format is not in this build.
     #[error(transparent)]
     FeatureOff(#[from] FeatureOff),
     /// A picture with more than one channel.
-    #[error("a height map must be a gray picture; this one has colors")]
+    #[error("a height map must be a gray picture; this one is in color")]
     Colors,
     /// Numbers that do not form a grid.
     #[error(transparent)]
@@ -194,7 +194,7 @@ pub enum HeightError {
 /// | TIFF, gray, unsigned | largest y | the same | `GDAL_NODATA` |
 /// | TIFF, gray, signed or float | largest y | 0 to n − 1; heights as stored | NaN, `GDAL_NODATA` |
 ///
-/// Costs O(bytes) time and memory, for packed files O(unpacked samples), of which there are at most
+/// Takes O(bytes) time and memory; for packed files O(unpacked samples), of which there are at most
 /// [`MAX_SAMPLES`].
 ///
 /// # Errors

@@ -50,7 +50,7 @@ pub(super) fn read_array(bytes: &[u8]) -> Result<Array, HeightError> {
     let kind = kind.and_then(|rest| rest.split('\'').nth(1));
     let kind = kind.ok_or(wrong("only plain numbers are read"))?;
     let columns_first = after("'fortran_order'").is_some_and(|rest| rest.starts_with("True"));
-    let mut shape = after("'shape'").and_then(shape).ok_or(wrong("the shape is not readable"))?;
+    let mut shape = after("'shape'").and_then(shape).ok_or(wrong("the shape cannot be read"))?;
     while shape.len() > 2
         && let Some(flat) = shape.iter().position(|n| *n == 1)
     {
@@ -64,7 +64,7 @@ pub(super) fn read_array(bytes: &[u8]) -> Result<Array, HeightError> {
     };
     let count = size(columns, rows)?;
     let data = &bytes[start + length..];
-    let (order, number) = kind.split_at_checked(1).ok_or(wrong("no type of numbers"))?;
+    let (order, number) = kind.split_at_checked(1).ok_or(wrong("unknown number type"))?;
     let little = match order {
         "<" | "|" => true,
         ">" => false,

@@ -1,4 +1,4 @@
-//! Which edges are creases: of constructed models every bent one, of grown ones chains that stand out.
+//! Which edges are creases: every bent edge of constructed models, and in organic ones chains that stand out.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! From exact lines to those of a draughtsman: what is joined, what is left out, and what never is.
+//! From exact lines to those of a drafter: what is joined, what is left out, and what never is.
 //!
 //! Wires are lines without faces, so a model of wires seen from above is any line drawing; at one
 //! millimeter to the unit its coordinates are millimeters on paper.

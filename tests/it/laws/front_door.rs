@@ -168,7 +168,7 @@ fn machines_are_known_by_name() {
     assert!(matches!(target("hp7475a"), Ok(Target::Hpgl(plotter)) if plotter.name == "hp7475a"));
     assert!(matches!(target("grbl-z"), Ok(Target::Gcode(_))));
     let message = target("grbl").unwrap_err().to_string();
-    assert!(message.starts_with("there is no machine called `grbl`; known are "), "{message}");
+    assert!(message.starts_with("unknown machine `grbl`; choose from "), "{message}");
     assert!(message.contains("hp7550") && message.contains("marlin"), "{message}");
 }
 

@@ -9,7 +9,7 @@ use hiddenline::stages::read::read_bytes;
 use hiddenline::stages::strokes::{StrokeKind, Strokes};
 
 /// Six unit squares in a row along x, in one plane: materials and groups change on the way, once back
-/// to an earlier one, once only in name, and once where the strip bends upwards.
+/// to an earlier one, once only in name, and once where the strip bends upward.
 const STRIP: &str = "\
 v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nv 3 0 0\nv 3 1 0\nv 4 0 0\nv 4 1 0\nv 5 0 0\nv 5 1 0\nv 6 0 1\nv 6 1 1
 usemtl red\nf 1 3 4 2\nf 3 5 6 4\nusemtl blue\nf 5 7 8 6\nusemtl red\nf 7 9 10 8\nusemtl red\nf 9 11 12 10

@@ -64,7 +64,7 @@ fn a_cube_seen_face_on_is_one_closed_square_drawn_once() {
 
 #[test]
 fn half_of_the_vertices_of_odd_degree_is_the_number_of_open_chains() {
-    // Nine edges are visible; three meet at the near corner and at each of its neighbours.
+    // Nine edges are visible; three meet at the near corner and at each of its neighbors.
     let camera = orthographic(dvec3(3.0, 4.0, 5.0), DVec3::Z);
     let drawing = drawn(&unit_cube(), &camera, &DrawOptions::default());
     let is_open = |points: &[DVec2]| points.first() != points.last();
@@ -132,7 +132,7 @@ fn a_box_on_a_turned_table_keeps_its_bottom_edges() {
     let camera = orthographic(turn * dvec3(4.0, -7.0, 5.0), turn * DVec3::Z);
     let drawing = drawn(&scene, &camera, &DrawOptions::default());
     let image = |p: DVec3| camera.image(turn * p);
-    // The two bottom edges towards the eye, in the middle of each.
+    // The two bottom edges toward the eye, in the middle of each.
     for middle in [dvec3(-0.15, -0.9, 0.0), dvec3(0.8, 0.2, 0.0)] {
         let point = image(middle);
         let on_stroke = drawing.iter().any(|stroke| {

@@ -84,7 +84,7 @@ impl Polygon<'_> {
             && (0..part.len()).all(|k| !self.touches(a, b, part[k], part[(k + 1) % part.len()]))
     }
 
-    /// Whether the way from corner i towards x begins strictly inside the corner's angle.
+    /// Whether the way from corner i toward x begins strictly inside the corner's angle.
     fn points_inside(&self, part: &[usize], i: usize, x: usize) -> bool {
         let n = part.len();
         let (before, at, after) = (part[(i + n - 1) % n], part[i], part[(i + 1) % n]);

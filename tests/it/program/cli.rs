@@ -81,7 +81,7 @@ fn the_extension_gives_the_format() {
 fn an_unknown_extension_is_bad_usage() {
     let (_keep, folder) = with_cube();
     let output = hiddenline(&folder, &["draw", "cube.obj", "-o", "cube.xyz"]);
-    assert_fails(&output, 2, "give --format");
+    assert_fails(&output, 2, "use --format");
 }
 
 #[test]

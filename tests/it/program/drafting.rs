@@ -67,5 +67,5 @@ fn crowded_drawings_get_a_hint_and_thin_follows_it() {
     let (_, said) = drawn(folder.path(), &[&view[..], &["--thin=0.9mm"]].concat());
     assert!(said.contains("thinned out"), "{said}");
     let (_, said) = drawn(folder.path(), &["fence.obj", "--view", "front"]);
-    assert!(said.contains("on other ink left out"), "{said}");
+    assert!(said.contains("of overlapping ink left out"), "{said}");
 }

@@ -152,7 +152,7 @@ fn more_colors_than_pens_are_told_with_the_remedy() {
     let folder = folder_with("a.svg", A4, &(1..8).map(line).collect::<String>());
     let arguments = ["optimize", "a.svg", "--machine", "hp7475a", "-o", "o.plt"];
     let run = hiddenline(folder.path(), &arguments);
-    assert_fails(&run, 1, "needs 7 pens and HP 7475A holds 6; give --pen visible=1");
+    assert_fails(&run, 1, "needs 7 pens and HP 7475A holds 6; use --pen visible=1");
     let (plt, _) =
         optimized(folder.path(), &["--machine", "hp7475a", "--pen", "visible=4"], "o.plt");
     assert_eq!(hpgl_ink(&plt, 0.02488).1, [4]);
@@ -262,7 +262,7 @@ fn pens_can_have_speed_and_pause_for_axidraw() {
     assert!(svg.contains("inkscape:label=\"1 visible\""), "{svg}");
     for bad in ["visible=1:speed=0", "visible=1:speed=fast", "visible=1:lift=3"] {
         let (succeeded, _, said) = drawn(bad);
-        assert!(!succeeded && said.contains("give"), "{said}");
+        assert!(!succeeded && said.contains("expected"), "{said}");
     }
 }
 

@@ -35,7 +35,7 @@ fn an_empty_drawing_says_why() {
     assert!(away.contains("the drawing is empty: nothing is in view"), "{away}");
     let no_boundary = told(2.0, &["--lines", "boundary"]);
     assert!(
-        no_boundary.contains("no lines of the kinds selected; give other --lines"),
+        no_boundary.contains("no lines of the kinds selected; use other --lines"),
         "{no_boundary}"
     );
 }
@@ -50,13 +50,9 @@ fn coordinates_near_the_end_of_double_precision_are_named() {
     };
     assert_fails(&draw(&[]), 1, "coordinates of 1e308 are too large");
     let up = draw(&["--eye", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"]);
-    assert_fails(
-        &up,
-        1,
-        "the up direction is parallel to the direction of view; give another --up",
-    );
+    assert_fails(&up, 1, "the up direction is parallel to the direction of view; use another --up");
     let same = draw(&["--eye", "1,2,3", "--target", "1,2,3"]);
-    assert_fails(&same, 1, "eye and target are the same point; give another --eye or --target");
+    assert_fails(&same, 1, "eye and target are the same point; use another --eye or --target");
     let apart = draw(&["--eye", "-1e308,0,0", "--target", "1e308,0,0"]);
     assert_fails(&apart, 1, "eye and target are too far apart");
 }

@@ -84,13 +84,13 @@ fn mistakes_are_reported_with_a_remedy() {
     assert_fails(
         &draw(&["--hatch", "--light-at", "0,0,0.5"]),
         1,
-        "give --light-at a point outside",
+        "use --light-at with a point outside",
     );
     let low = draw(&["--hatch", "--ground", "--light", "1,1,0"]);
-    assert_fails(&low, 1, "give a --light with a positive z");
+    assert_fails(&low, 1, "use a --light with a positive z");
     assert_fails(&draw(&["--hatch", "--hatch-levels", "7"]), 2, "a number of levels from 2 to 6");
-    assert_fails(&draw(&["--hatch", "--hatch-black", "1.5"]), 2, "at most 1");
-    assert_fails(&draw(&["--hatch", "--hatch-material", "brick"]), 2, "as in brick=30:0.4");
+    assert_fails(&draw(&["--hatch", "--hatch-black", "1.5"]), 2, "must be at most 1");
+    assert_fails(&draw(&["--hatch", "--hatch-material", "brick"]), 2, "such as brick=30:0.4");
     assert_fails(
         &draw(&["--hatch", "--light", "1,0,0", "--light-at", "9,9,9"]),
         2,

@@ -248,7 +248,7 @@ fn a_failure_ends_the_work_unless_told_otherwise() {
     assert!(text(&run.stderr).ends_with("error: 2 drawn, 1 failed\n"), "{}", text(&run.stderr));
     assert_eq!(files(folder, "out").len(), 2);
     let run = hiddenline(folder, &[&models[..], &["--threads", "1"]].concat());
-    assert_fails(&run, 1, "1 failed; --keep-going draws the rest all the same");
+    assert_fails(&run, 1, "1 failed; --keep-going draws the rest anyway");
 }
 
 #[test]
@@ -278,16 +278,16 @@ fn what_cannot_be_meant_is_refused() {
     let fails = |arguments: &[&str], code: i32, message: &str| {
         assert_fails(&hiddenline(folder, &[&["draw"], arguments].concat()), code, message);
     };
-    fails(&["cube.obj", "--turntable", "3"], 2, "several drawings need names; give -o");
+    fails(&["cube.obj", "--turntable", "3"], 2, "several drawings need names; use -o");
     let same = ["--each", "cube.obj", "spire.obj", "-o", "out/a.svg"];
-    fails(&same, 2, "several drawings would be written to out/a.svg; give a name with {stem}");
+    fails(&same, 2, "several drawings would be written to out/a.svg; use a name with {stem}");
     fails(&["cube.obj", "--shard", "3/2", "-o", "out/a.svg"], 2, "K from 1 to N");
-    fails(&["cube.obj", "--turntable", "2", "-o", "no/{index}.svg"], 1, "there is no folder no");
-    fails(&["--each", "cube.obj", "spire.obj", "-o", "{stem}.obj"], 2, "give --format");
+    fails(&["cube.obj", "--turntable", "2", "-o", "no/{index}.svg"], 1, "folder no does not exist");
+    fails(&["--each", "cube.obj", "spire.obj", "-o", "{stem}.obj"], 2, "use --format");
     let onto = ["--each", "cube.obj", "spire.obj", "--format", "svg", "-o", "{stem}.obj"];
-    fails(&onto, 1, "cannot write cube.obj: it is read from");
+    fails(&onto, 1, "cannot write cube.obj: it is an input file");
     for (table, message) in [
-        ("azimut\n1\n", "t.csv:1: `azimut` is no camera option; did you mean azimuth?"),
+        ("azimut\n1\n", "t.csv:1: `azimut` is not a camera option; did you mean azimuth?"),
         ("azimuth\n1\nx\n", "t.csv:3: invalid value 'x' for '--azimuth <DEG>': not a number"),
         ("azimuth,fov\n1\n", "t.csv: "),
         ("azimuth,eye\n1,\"1,2,3\"\n", "t.csv:2: "),

@@ -107,7 +107,7 @@ fn a_missing_folder_is_told_without_the_name_of_a_temporary_file() {
     for command in [["draw", "cube.obj"], ["preview", "cube.obj"], ["optimize", "line.svg"]] {
         let name = if command[0] == "preview" { "no/x.png" } else { "no/x.svg" };
         let stderr = told(&folder, &[&command[..], &["-o", name]].concat(), 1);
-        assert!(stderr.contains("there is no folder no") && !stderr.contains(".hiddenline"));
+        assert!(stderr.contains("folder no does not exist") && !stderr.contains(".hiddenline"));
     }
 }
 
@@ -167,11 +167,11 @@ fn a_surface_without_values_is_told_with_its_formula_and_range() {
 fn a_level_surface_has_no_level_curves() {
     let (_keep, folder) = with_files();
     let flat = ["surface", "0", "--samples", "5", "--lines", "levels"];
-    fails(&folder, &flat, 1, "the surface is level, 0 high everywhere");
+    fails(&folder, &flat, 1, "the surface is flat at height 0");
     let more = ["surface", "3", "--samples", "5", "--lines", "levels,x", "-o", "x.svg"];
-    fails(&folder, &more, 0, "warning: the surface is level, 3 high everywhere");
+    fails(&folder, &more, 0, "warning: the surface is flat at height 3");
     let away = ["surface", "x", "--samples", "5", "--lines", "levels", "--levels", "7,9"];
-    fails(&folder, &away, 1, "heights from -5 to 5: none of --levels is there");
+    fails(&folder, &away, 1, "heights from -5 to 5: none of the --levels is in this range");
 }
 
 #[test]
@@ -241,8 +241,8 @@ fn the_largest_scale_that_fits_is_told_and_fits() {
 fn wrong_names_are_bad_usage() {
     let (_keep, folder) = with_files();
     fails(&folder, &["draw", "cube.obj", "--machine", "axidrew"], 2, "did you mean axidraw");
-    fails(&folder, &["draw", "cube.obj", "--preset", "none"], 2, "no preset called `none`");
-    fails(&folder, &["surface", "x", "--samples", "100000"], 2, "are more than 100000000");
+    fails(&folder, &["draw", "cube.obj", "--preset", "none"], 2, "unknown preset `none`");
+    fails(&folder, &["surface", "x", "--samples", "100000"], 2, "exceed the limit of 100000000");
     fails(&folder, &["preview", "cube.obj", "--light", "0,0,0"], 2, "not a direction");
     fails(&folder, &["fill", "cube.obj", "--light", "0,0,0"], 2, "not a direction");
 }
@@ -460,7 +460,7 @@ fn letters_that_the_font_does_not_have_are_warned_of_once() {
     };
     assert!(!titled("Grüße: 3 m² ± 2°").contains("warning"));
     let stderr = titled("日本日");
-    assert!(stderr.contains("warning: the font has no `日`, `本`: "), "{stderr}");
+    assert!(stderr.contains("warning: the font lacks `日`, `本`: "), "{stderr}");
 }
 
 #[test]

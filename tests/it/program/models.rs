@@ -334,7 +334,7 @@ fn models_that_seem_to_lie_on_their_backs_get_a_hint() {
         .collect();
     let folder = folder_of([("up.obj", standing.as_bytes()), ("a.glb", &Triangles::house().glb())]);
     let (_, stderr) = draw(folder.path(), &["up.obj"]);
-    assert!(stderr.contains("hint: up.obj seems to be made with y up; if so, give --up-axis y"));
+    assert!(stderr.contains("hint: up.obj seems to be modeled with y up; if so, use --up-axis y"));
     for arguments in [&["up.obj", "--up-axis", "y"][..], &["up.obj", "--up-axis", "z"], &["a.glb"]]
     {
         assert!(!draw(folder.path(), arguments).1.contains("hint"), "{arguments:?}");
@@ -360,7 +360,7 @@ fn what_is_no_model_is_named_with_the_remedy() {
     for (file, part) in [
         ("part.step", "cascadio.step_to_glb("),
         ("page.stl", "this is a web page"),
-        ("unknown", "give --input-format obj, stl, ply, off, gltf or 3mf"),
+        ("unknown", "use --input-format obj, stl, ply, off, gltf or 3mf"),
     ] {
         let output = hiddenline(folder.path(), &["draw", file, "-o", "x.svg"]);
         super::assert_fails(&output, 1, part);

@@ -92,12 +92,12 @@ fn legends_name_sheets_by_formulas_values_or_names() {
         assert_fails(&hiddenline(folder.path(), &[&["surface"], arguments].concat()), 2, message);
     };
     fails(&["x", "y", "--names", "a,b,c"], "--names gives 3 names for 2 sheets");
-    fails(&["x", "--for", "x=1,2"], "has a meaning in formulas already");
+    fails(&["x", "--for", "x=1,2"], "already has a meaning in formulas");
     fails(&["x", "--for", "a"], "as in a=1,2,3");
     fails(&["x", "--for", "a=1:2"], "from, to and step");
     fails(&["x", "--for", "a=1:0:1"], "do not lead from its first to its last value");
     fails(&["x", "--for", "a=1:33:1"], "more than 32");
-    fails(&["x", "y", "--for", "a=1:17:1"], "--for makes 34 sheets; 32 are the most");
+    fails(&["x", "y", "--for", "a=1:17:1"], "--for makes 34 sheets; the limit is 32");
     fails(&["x", "--for", "a=1", "--for", "a=2"], "`a` is given two lists of values");
     fails(&["x", "--for", "a=1", "--set", "a=2"], "`a` is given by --set and by --for");
 }
@@ -131,7 +131,7 @@ fn wrong_parameters_are_bad_usage() {
         (&["a*x", "--set", "a"][..], "as in a=2"),
         (&["a*x", "--set", "a=b"], "unknown name `b`"),
         (&["a*x", "--set", "a=1/0"], "not a finite number"),
-        (&["a*x", "--set", "x=1"], "has a meaning in formulas already"),
+        (&["a*x", "--set", "x=1"], "already has a meaning in formulas"),
         (&["a*x", "--set", "a=1", "--set", "a=2"], "--set gives `a` two values"),
         (&["a*x"], "unknown name `a`"),
         (&["--grid", "h.csv", "--set", "a=1"], "cannot be used with"),

@@ -68,7 +68,7 @@ fn machines_are_known_by_name_and_near_misses_are_told() {
     assert_fails(&draw(&["--machine", "marlin", "-o", "a.plt"]), 2, "not a machine for hpgl");
     fs::write(folder.join("mine.toml"), "feed = 1\n").unwrap();
     assert_fails(&draw(&["--gcode-profile", "mine.toml", "-o", "a.nc"]), 1, "mine.toml: ");
-    assert_fails(&draw(&["--page", "123x45", "--margin", "1", "-o", "a.plt"]), 1, "no paper of");
+    assert_fails(&draw(&["--page", "123x45", "--margin", "1", "-o", "a.plt"]), 1, "take paper of");
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "nothing was written");
     assert!(draw(&["--machine", "marlin", "-o", "a.gcode"]).status.success());
     assert!(text(&fs::read(folder.join("a.gcode")).unwrap()).contains("G1"));
@@ -218,7 +218,7 @@ up_acceleration = 400\nraise = 0.1\nlower = 0.1
     let old = draw(&["--machine", "OLD", "--page", "a5", "-o", "a.plt"]);
     assert!(old.status.success(), "{}", text(&old.stderr));
     assert!(written("a.plt").contains("PU0,0;SP0"), "{}", written("a.plt"));
-    assert_fails(&draw(&["--machine", "old", "-o", "b.plt"]), 1, "it takes a5");
+    assert_fails(&draw(&["--machine", "old", "-o", "b.plt"]), 1, "choose from a5");
     // What limits a line of 1 mm/s is its length: 6 edges of a cube on A4 take a quarter of an hour.
     let minutes = |machine: &str| {
         let output = draw(&["--machine", machine, "--stats", "-o", "a.svg"]);

@@ -155,7 +155,7 @@ fn edges_are_counted_as_draw_counts_them() {
 #[test]
 fn bad_usage_is_told() {
     for (arguments, message) in [
-        (&["-o", "x.png"][..], "give models"),
+        (&["-o", "x.png"][..], "specify models"),
         (&[SPOT, "--expr", "x", "-o", "-"], "cannot be used with"),
         (&[SPOT, "--grid", "x.csv", "-o", "-"], "cannot be used with"),
         (&[SPOT, "--x", "0:1", "-o", "-"], "are for surfaces"),
@@ -178,7 +178,7 @@ fn a_parallel_view_has_no_field_of_view_to_fit() {
     std::fs::write(folder.path().join("old.png"), "as it was").unwrap();
     let arguments = ["preview", "cube.obj", "--fit-fov", "--view", "isometric", "-o", "old.png"];
     let refused = hiddenline(folder.path(), &arguments);
-    assert_fails(&refused, 1, "no field of view to fit; give --projection perspective");
+    assert_fails(&refused, 1, "no field of view to fit; use --projection perspective");
     assert_eq!(std::fs::read_to_string(folder.path().join("old.png")).unwrap(), "as it was");
     let shown = hiddenline(folder.path(), &["preview", "cube.obj", "--fit-fov", "-o", "-"]);
     assert!(shown.status.success(), "{}", text(&shown.stderr));

@@ -126,7 +126,7 @@ fn a_setting_is_a_plain_value() {
         ("page = ['a4', 'a3']", "page takes one value"),
         ("page = { a = 1 }", "page takes one value"),
         ("pen = [['visible=1']]", "pen takes one value"),
-        ("strict = 'maybe'", "strict is true or false"),
+        ("strict = 'maybe'", "strict must be true or false"),
     ] {
         settings(folder, &format!("[defaults]\n{line}\n"));
         assert_fails(&hiddenline(folder, &["draw", "cube.obj"]), 1, message);

@@ -208,18 +208,18 @@ fn bad_input_is_told_in_one_line() {
     usage(&["sine(x)"], "column 1: unknown name `sine`; did you mean `sin`?");
     usage(&["x", "1 +"], "in formula 2 of 2, column");
     usage(&["x", "--x", "1:1"], "the two numbers must be different");
-    usage(&["x", "--aspect", "4:3"], "give box, data, or three lengths, as in 4:4:3");
+    usage(&["x", "--aspect", "4:3"], "expected box, data, or three lengths, as in 4:4:3");
     usage(&["x", "--axis-titles", "a,b"], "a comma in a title is written `\\,`");
     usage(&["x", "--tick-step", "1,,", "--ticks-pi", "x"], "are given for the same axis");
-    usage(&["x", "--axes", "none", "--title", "T"], "leaves out the title, too");
-    fails(&folder, &["x", "--axes", "frame"], 1, "give --view top or other --axes");
-    fails(&folder, &["x", "--log", "x"], 1, "give another range by --x or leave x out of --log");
+    usage(&["x", "--axes", "none", "--title", "T"], "also leaves out the title");
+    fails(&folder, &["x", "--axes", "frame"], 1, "use --view top or other --axes");
+    fails(&folder, &["x", "--log", "x"], 1, "use another range for --x or leave x out of --log");
     usage(&["x", "--samples", "0"], "at least 2 samples are needed");
-    usage(&["x", "--samples", "1000000000"], "are more than 100000000");
+    usage(&["x", "--samples", "1000000000"], "exceed the limit of 100000000");
     usage(&["x", "--samples", "1x5"], "at least 2 samples are needed");
     usage(&["x", "--lines", "levels", "--levels", "0"], "at least 1 level");
-    usage(&["x", "--levels", "3"], "give --lines levels, too");
-    usage(&["x", "y", "1", "--engine", "max-min"], "give --engine roberts or auto");
+    usage(&["x", "--levels", "3"], "add levels to --lines");
+    usage(&["x", "y", "1", "--engine", "max-min"], "use --engine roberts or auto");
     usage(&["--points", "heights", "--lines", "x"], "scattered points have no grid lines");
     let run = |arguments: &[&str], message: &str| fails(&folder, arguments, 1, message);
     run(&["1/0"], "no sample has a height");
@@ -244,7 +244,8 @@ fn bad_input_is_told_in_one_line() {
         ("0 0 1\n1 1 1\n2 2 1\n", "3 points make no triangle"),
         (
             "0 0 1\n0 0 2\n1 1 1\n2 5 1\n",
-            "heights:1 and heights:2 are both at x = 0, y = 0, with heights 1 and 2; give --duplicates",
+            "heights:1 and heights:2 are both at x = 0, y = 0, with heights 1 and 2; use \
+             --duplicates",
         ),
         ("0 0 1\n0 x 2\n", "line 2: expected the three numbers"),
     ] {
@@ -336,7 +337,7 @@ fn what_is_too_large_to_draw_is_told_before_work_begins() {
     let folder = with_file("-1e308 1e308\n1e308 -1e308\n");
     let run = |arguments: &[&str], message: &str| fails(&folder, arguments, 1, message);
     run(&["x", "--samples", "10000", "--lines", "levels"], "has 199960002 triangles");
-    run(&["x", "--lines", "levels", "--levels", "65535"], "give fewer --samples or --levels");
+    run(&["x", "--lines", "levels", "--levels", "65535"], "use fewer --samples or --levels");
     run(&["x*1e308"], "too far apart to draw");
     run(&["--grid", "heights"], "too far apart to draw");
     run(&["x*1e300", "--aspect", "data", "--z-scale", "1e10"], "too large to draw");
@@ -355,10 +356,10 @@ fn lines_off_the_function_and_lines_that_flow_together_are_told() {
     let smooth = warnings(&["x*y"]);
     assert!(!smooth.contains("not certified"), "{smooth}");
     let crowded = warnings(&["x*y", "--samples", "600", "--smoothness", "0"]);
-    assert!(crowded.contains("lines flow into each other; --every "), "{crowded}");
+    assert!(crowded.contains("lines run into each other; --every "), "{crowded}");
     let every = crowded.split("--every ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
     let thinned = warnings(&["x*y", "--samples", "600", "--smoothness", "0", "--every", every]);
-    assert!(!thinned.contains("flow into each other"), "{thinned}");
+    assert!(!thinned.contains("run into each other"), "{thinned}");
 }
 
 #[test]
@@ -432,7 +433,7 @@ fn a_sphere_of_two_sheets_is_drawn_by_max_min_as_by_roberts() {
         assert!((found - expected).abs() < 1e-9 * expected, "{found}, {expected}");
         let output = run(&folder, &[&ball[..], &["--format", "json"]].concat());
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        let lines = told.lines().filter(|line| line.contains("took the mean height"));
+        let lines = told.lines().filter(|line| line.contains("moved to the mean height"));
         assert_eq!(lines.count(), 1, "{told}");
     }
     // Seen from inside, or with a gap along the rim, it is no work for max-min.
@@ -483,7 +484,7 @@ fn height_files_tell_what_is_odd_about_them() {
     };
     let grid = ["--grid", "heights"];
     let list: String = (0..20).map(|k| format!("{} {} {}\n", k % 5, k / 5, k * k % 7)).collect();
-    warned(&list, &grid, "if so, give --points heights instead of --grid heights");
+    warned(&list, &grid, "if so, use --points heights instead of --grid heights");
     warned("some words\n1 2\n3 4\n", &grid, "1 line before the first row of numbers was skipped");
     let points = "0 0 1\n2 0 1\n0 0 3\n0 2 -\n0 2 1\n";
     let arguments = |duplicates| ["--points", "heights", "--duplicates", duplicates];
@@ -578,7 +579,7 @@ fn heights_outside_a_range_are_cut_off() {
     assert!(!text(&cut.stderr).contains("grows"), "{}", text(&cut.stderr));
     let empty = run(&["x+y", "--z", "20:30", "-o", "none.svg"]);
     assert_eq!(empty.status.code(), Some(1));
-    assert!(text(&empty.stderr).contains("heights from -10 to 10: none of them is in --z"));
+    assert!(text(&empty.stderr).contains("heights from -10 to 10: none is within --z"));
     assert!(!folder.path().join("none.svg").exists());
     let drawn = |more: &[&str]| {
         let output = run(&[&["x+y", "--samples", "9", "-o", "a.svg"], more].concat());

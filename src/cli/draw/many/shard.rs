@@ -42,7 +42,7 @@ impl FromStr for ShardName {
         });
         match numbers {
             Some((k, n)) if (1..=n).contains(&k) => Ok(Self::Numbers(Shard { k: k - 1, n })),
-            _ => Err("give K/N with K from 1 to N, as in 2/8, or slurm".to_owned()),
+            _ => Err("expected K/N with K from 1 to N, as in 2/8, or slurm".to_owned()),
         }
     }
 }
@@ -65,12 +65,13 @@ fn of_array(variable: impl Fn(&str) -> Option<String>) -> Result<Shard, String> 
     let number = |name: &str| -> Result<Option<u64>, String> {
         let name = format!("SLURM_ARRAY_TASK_{name}");
         let Some(text) = variable(&name) else { return Ok(None) };
-        let number = text.trim().parse().map_err(|_| format!("{name} is no number: `{text}`"))?;
+        let number =
+            text.trim().parse().map_err(|_| format!("{name} is not a number: `{text}`"))?;
         Ok(Some(number))
     };
     let needed = |name: &str| -> Result<u64, String> {
         number(name)?.ok_or_else(|| {
-            format!("--shard slurm: SLURM_ARRAY_TASK_{name} is not set; start it by sbatch --array")
+            format!("--shard slurm: SLURM_ARRAY_TASK_{name} is not set; run it with sbatch --array")
         })
     };
     let (id, min, n) = (needed("ID")?, needed("MIN")?, needed("COUNT")?);
@@ -81,8 +82,8 @@ fn of_array(variable: impl Fn(&str) -> Option<String>) -> Result<Shard, String> 
     match offset.map(|offset| offset / step) {
         Some(k) if is_whole && k < n => Ok(Shard { k, n }),
         _ => Err(format!(
-            "--shard slurm needs an array without gaps, as in --array=1-8; here are {n} tasks from \
-             {min} to {max}, and this is {id}"
+            "--shard slurm needs an array without gaps, as in --array=1-8; this one has {n} tasks \
+             from {min} to {max}, and this is task {id}"
         )),
     }
 }

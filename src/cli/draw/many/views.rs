@@ -48,7 +48,7 @@ pub(super) fn read(path: &Path, typed: &CameraArgs) -> Result<Vec<ViewSource>, R
     for name in &headers {
         if !COLUMNS.contains(&name) {
             let hint = suggestion(name, COLUMNS.into_iter());
-            return Err(failed(format!(":1: `{name}` is no camera option{hint}")));
+            return Err(failed(format!(":1: `{name}` is not a camera option{hint}")));
         }
     }
     let mut views = Vec::new();
@@ -59,9 +59,7 @@ pub(super) fn read(path: &Path, typed: &CameraArgs) -> Result<Vec<ViewSource>, R
         views.push(row.or(typed).view_source());
     }
     if views.is_empty() {
-        return Err(failed(
-            ": no views; give a row for each below the names of the options".into(),
-        ));
+        return Err(failed(": no views; add one row per view below the option names".into()));
     }
     Ok(views)
 }

@@ -1,13 +1,13 @@
-// The page: what is shown, and when it is asked for.
+// The page: what it shows, and when it asks for more.
 //
-// While one turns, the last draft is drawn in every frame as the camera sees it now, and at most one
-// request for the next draft is under way. At rest comes the exact drawing.
+// While the user turns the model, every frame shows the last draft from the current camera, and at most
+// one request for the next draft is pending. At rest, the exact drawing follows.
 
-/** Milliseconds of rest after which the exact drawing is asked for. */
+/** Milliseconds of rest after which the exact drawing is requested. */
 const REST = 150;
-/** A draft that takes longer is not asked for while one turns. */
+/** Drafts that take longer are not requested while turning. */
 const SLOW = 400;
-/** A drawing that takes longer shows what is being done. */
+/** A drawing that takes longer shows its progress. */
 const PATIENCE = 1000;
 
 const by = (id) => document.getElementById(id);
@@ -20,14 +20,14 @@ class App {
     this.formulas = new Formulas(by("formulas"), () => this.changed(REST));
     /** Grows with each change of camera or options. */
     this.version = 0;
-    /** What of these the shown exact drawing and the last draft are of. */
+    /** The versions of the exact drawing on display and of the last draft. */
     this.exactOf = this.draftOf = -1;
     /** Drafts of other options show other lines. */
     this.optionsVersion = 0;
     this.isTurning = false;
     this.isExactDue = false;
     this.draftMs = 0;
-    /** Drafts that came while turning, and when: the page's own counter. */
+    /** Drafts that arrived while turning, and when: a counter for the page alone. */
     this.counter = { drafts: 0, milliseconds: 0 };
     this.listen();
     this.connect();
@@ -36,7 +36,7 @@ class App {
   async connect() {
     try {
       await this.server.events((event) => this.happened(event));
-      this.say("hiddenline has ended.");
+      this.say("hiddenline has stopped.");
     } catch (error) {
       this.say(error.message);
     }
@@ -68,7 +68,7 @@ class App {
     this.changed(0);
   }
 
-  /** Another model is shown: everything begins anew. */
+  /** Shows another model: everything starts over. */
   async renew() {
     by("welcome").hidden = true;
     location.reload();
@@ -100,13 +100,13 @@ class App {
     this.changed(REST);
   }
 
-  /** What was typed of the camera, while it is as typed. */
+  /** The camera options as typed, until they change. */
   typedCamera() {
     if (!this.camera.isAsTyped) return {};
     return Object.fromEntries(OF_CAMERA.filter((name) => name in this.about.options).map((name) => [name, this.about.options[name]]));
   }
 
-  /** Options that say otherwise how large the drawing is. */
+  /** Other options that set the size of the drawing. */
   dropPlacements() {
     for (const name of ["drawing-scale", "fit-fov"]) {
       delete this.options[name];
@@ -119,7 +119,7 @@ class App {
     return { camera: this.camera.options(), options: { ...this.options, ...this.formulas.options() }, ...more };
   }
 
-  /** Something has changed; the exact drawing follows after so many milliseconds, or when asked for. */
+  /** Something has changed; the exact drawing follows after this many milliseconds, or on request. */
   changed(rest) {
     this.version++;
     this.isExactDue = false;
@@ -130,7 +130,7 @@ class App {
     this.pump();
   }
 
-  /** Asks for the exact drawing after so many milliseconds. */
+  /** Requests the exact drawing after this many milliseconds. */
   settle(rest) {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
@@ -163,7 +163,7 @@ class App {
     const isExact = this.exactOf === this.version;
     if (isExact || !this.draft || !this.camera) this.paper.drawExact();
     else this.paper.drawDraft(this.draft, this.camera, this.draft.facts.page);
-    // What is wrong is told elsewhere; what is seen is the last drawing that could be made.
+    // Errors are shown elsewhere; the page keeps the last valid drawing.
     if (isExact && this.hasFailed) this.badge("old", "not drawn");
     else this.badge(isExact ? "exact" : "draft", isExact ? "exact" : "draft");
     by("paper").setAttribute("aria-busy", String(!isExact));
@@ -238,7 +238,7 @@ class App {
     return null;
   }
 
-  /** What the drawing is like, in words. */
+  /** Describes the drawing in words. */
   tell(facts) {
     const { strokes, meters, minutes, lifts, seconds } = facts;
     const hours = minutes >= 60 ? `${Math.floor(minutes / 60)} h ${Math.round(minutes % 60)} min`
@@ -321,7 +321,7 @@ class App {
     }
   }
 
-  /** The command for the format that is chosen: formats are called as their extensions. */
+  /** The command for the format that is chosen: formats are named like their extensions. */
   showCommand() {
     by("command").textContent = this.command?.replace(/\.svg('?)$/, `.${by("format").value}$1`) ?? "";
   }
@@ -335,7 +335,7 @@ class App {
     }
   }
 
-  /** Plays the pens' order. */
+  /** Plays the stroke order. */
   play() {
     const order = by("order");
     if (this.playing) { cancelAnimationFrame(this.playing); this.playing = null; this.playButton(); return; }

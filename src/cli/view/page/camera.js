@@ -6,7 +6,7 @@ const NAMED = {
   front: [0, 0], right: [90, 0], back: [180, 0], left: [270, 0], top: [0, 90], bottom: [0, -90],
   isometric: [45, 35.264], dimetric: [20.705, 19.471], trimetric: [30, 25],
 };
-/** Options that the camera speaks for. */
+/** Options that the camera sets. */
 const OF_CAMERA = ["azimuth", "elevation", "view", "projection", "fov", "near", "target", "distance",
   "view-height", "up", "eye"];
 
@@ -17,7 +17,7 @@ const plus = (a, b, factor = 1) => [a[0] + factor * b[0], a[1] + factor * b[1], 
 const length = (a) => Math.hypot(...a);
 const unit = (a) => { const size = length(a); return a.map((x) => x / size); };
 const tenth = (x) => Math.round(x * 10) / 10 || 0;
-/** Six significant digits, as short as that. */
+/** At most six significant digits. */
 const brief = (x) => String(Number(x.toPrecision(6)));
 
 class Camera {
@@ -44,7 +44,7 @@ class Camera {
     this.known = { target: [0, 0, 0], distance: 1 };
   }
 
-  /** Takes over what the last answer says of the camera in it. */
+  /** Adopts the camera of the last answer. */
   learn({ eye, target, up, projection, fov }, fromFile) {
     const offset = plus(eye, target, -1);
     this.known = { target, distance: length(offset) };
@@ -89,7 +89,7 @@ class Camera {
     return String(Number((Math.round(x / step) * step).toPrecision(12)));
   }
 
-  /** What is up, where it is not what the command line takes by itself. */
+  /** The up direction, where it differs from the default of the command line. */
   upward() {
     if (this.up) return this.up;
     if (Math.abs(this.elevation) < 90) return null;
@@ -168,7 +168,7 @@ class Camera {
     this.target = plus(plus(this.target, right, -x * size), upward, y * size);
   }
 
-  /** Comes nearer by a factor, toward a place on paper in millimeters. */
+  /** Zooms by a factor, toward a place on paper in millimeters. */
   zoom(factor, [x, y], page) {
     this.setFrame(page);
     const { right, upward } = this.frame();

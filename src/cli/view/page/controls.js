@@ -15,7 +15,7 @@ function make(tag, properties = {}, ...children) {
 const OPEN = ["Lines", "Surface", "Page"];
 /** Groups in their order on the page; others follow. */
 const ORDER = ["Surface", "Camera", "Lines", "Hatching", "Light", "Page", "Pens and plotter", "Axes", "Model", "Output"];
-/** Options that are set otherwise. */
+/** Options that are set elsewhere. */
 const ELSEWHERE = ["eye", "set"];
 /** Options for parametric surfaces only. */
 const PARAMETRIC = ["u", "v"];
@@ -33,7 +33,7 @@ class Controls {
     this.rows = new Map();
   }
 
-  /** Builds everything anew for what the server says. */
+  /** Rebuilds everything from what the server reports. */
   build(about, values) {
     this.values = values;
     this.rows.clear();
@@ -142,7 +142,7 @@ class Controls {
     this.rows.get(name)?.row.classList.toggle("changed", name in this.values);
   }
 
-  /** Shows an error at the option that it is about; returns whether there is such an option. */
+  /** Shows an error at its option; returns whether there is such an option. */
   fail(name, message) {
     for (const { input, error } of this.rows.values()) {
       error.hidden = true;

@@ -1,4 +1,4 @@
-// Dragging, pinching, turning the wheel, and keys: all of them end in calls of `act`.
+// Dragging, pinching, turning the wheel, and keys: all of them call `act`.
 
 /** Half a turn for a drag across the height of the canvas. */
 const TURN = 180;

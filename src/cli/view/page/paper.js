@@ -12,7 +12,7 @@ class Paper {
     this.context = canvas.getContext("2d");
     this.page = { width: 297, height: 210, margin: 10 };
     this.pens = [];
-    /** Millimeters that are drawn, in the pens' order; infinite for all. */
+    /** Millimeters that are drawn, in stroke order; infinite for all. */
     this.drawnMm = Infinity;
   }
 

@@ -1,6 +1,6 @@
 // Requests to the server, and what its answers hold.
 
-/** An answer of the server that is no drawing. */
+/** An answer from the server that is not a drawing. */
 class Fault extends Error {
   constructor(status, about) {
     super(about.error ?? `the server answered ${status}`);
@@ -24,7 +24,7 @@ class Server {
       answer = await fetch(path, { method, headers, body, signal, cache: "no-store" });
     } catch (error) {
       if (error.name === "AbortError") throw error;
-      throw new Fault(0, { error: "hiddenline has ended; start it again and open the address that it prints" });
+      throw new Fault(0, { error: "hiddenline has stopped; start it again and open the address it prints" });
     }
     if (!answer.ok) {
       const about = await answer.json().catch(() => ({}));
@@ -76,7 +76,7 @@ class Server {
 function parse(octets) {
   const words = new Uint32Array(octets);
   // "HLV1", little-endian.
-  if (words[0] !== 0x31564c48) throw new Fault(0, { error: "the answer is no drawing" });
+  if (words[0] !== 0x31564c48) throw new Fault(0, { error: "the answer is not a drawing" });
   const [, seq, flags, nGroups, nStrokes, nPoints] = words;
   const groups = [];
   for (let k = 0; k < nGroups; k++) {

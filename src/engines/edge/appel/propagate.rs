@@ -2,7 +2,7 @@
 //!
 //! Every edge between two regular vertices gives the difference of their quantitative invisibilities. A
 //! union-find structure with these differences joins vertices into connected sets; one sight line then
-//! determines a whole set. An edge within a set repeats what is known already, which serves as a checksum.
+//! determines a whole set. An edge within a set repeats what is already known, which serves as a checksum.
 
 /// Vertices in sets, each with its difference to a vertex that represents the set.
 #[derive(Debug)]

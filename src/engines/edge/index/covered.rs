@@ -38,7 +38,7 @@ const NORMAL_ERROR: f64 = 1e-9;
 /// Covers are tried on cells of the level that is this much finer than their own, or the finest.
 const FINER: u32 = 2;
 
-/// Cells that a border of a surface crosses are quartered so many times.
+/// Cells that a border of a surface crosses are quartered this many times.
 const MAX_QUARTERINGS: u32 = 3;
 
 /// More triangles than this are not tried on one cell.
@@ -148,7 +148,7 @@ struct Square {
     high: DVec2,
 }
 
-/// What a triangle and those that go on from it across sealed sides do to a cell.
+/// What a triangle and those that continue from it across sealed sides do to a cell.
 enum Patch {
     /// The triangle lies beside the cell.
     Apart,
@@ -326,7 +326,7 @@ impl Cover {
     }
 }
 
-/// The depth of a triangle's plane as a function of the image, rounded upwards.
+/// The depth of a triangle's plane as a function of the image, rounded upward.
 struct DepthPlane {
     /// The unit normal along the image's axes and the direction of view.
     normal: DVec3,

@@ -53,7 +53,7 @@ pub(super) fn levels<'s>(
         );
     }
     let n_cells = (n_items as f64 / TRIANGLES_PER_CELL).clamp(FINEST_CELLS.0, FINEST_CELLS.1);
-    // A flat image gets cells as long as its longer side asks for.
+    // A flat image gets cells as long as its longer side calls for.
     let cell = (size.x * size.y / n_cells).sqrt().max(size.max_element() / n_cells);
     let mut level = Level {
         cell,

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 /// Fewest and most cells along the longer side of the image.
 const CELLS: std::ops::RangeInclusive<u32> = 16..=512;
 
-/// A cell has about so many triangles. Smaller cells cost more than they cull.
+/// A cell has about this many triangles. Smaller cells cost more than they cull.
 const TRIANGLES_PER_CELL: usize = 16;
 
 /// No point of the image is further than this from its spot, in cells.
@@ -37,7 +37,7 @@ const MANY_SAMPLES: u64 = 64;
 /// See [`MANY_SAMPLES`].
 const MOST_SAMPLES: u64 = 1 << 22;
 
-/// A cell that so many triangles do not cover is not covered.
+/// A cell that this many triangles do not cover is not covered.
 const MOST_TRIANGLES: usize = 96;
 
 /// A point of the image in units of cells, and its depth rounded both ways.

@@ -7,7 +7,7 @@ use crate::predicates::{PlaneName, Planes, Sign};
 /// Which end of the order comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WalkOrder {
-    /// What may be hidden first: the order of painting.
+    /// What may be hidden first: the paint order.
     FarToNear,
     /// What may hide first: for masks of what is drawn.
     NearToFar,

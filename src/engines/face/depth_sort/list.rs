@@ -1,4 +1,4 @@
-//! The list being sorted: what is moved to its front, and what is split.
+//! The list being sorted: which fragments move to its front, and which are split.
 //!
 //! Items moved before each other form a stack: on top is the one being tested, below it the one that it
 //! has to precede, and so on down to the one that headed the list. All of them are marked.
@@ -105,7 +105,7 @@ impl<'a> List<'a> {
         if n_samples == 0 { 0 } else { found / n_samples as u64 * n as u64 }
     }
 
-    /// All items, or their parts, in the order of painting.
+    /// All items, or their parts, in the paint order.
     pub(super) fn sorted(
         &mut self,
         counts: &mut DepthSortCounts,

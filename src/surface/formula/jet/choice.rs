@@ -19,7 +19,7 @@ pub(crate) enum Comparison {
 }
 
 impl Jet {
-    /// A function that is constant between the numbers where it jumps upwards.
+    /// A function that is constant between the numbers where it jumps upward.
     pub(crate) fn step(self, function: fn(f64) -> f64) -> Self {
         let (low, high) = (function(self.value.low), function(self.value.high));
         // The argument may jump as long as this keeps its value.

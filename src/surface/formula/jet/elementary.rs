@@ -6,7 +6,7 @@ use super::super::function::Function;
 use super::super::interval::Interval;
 use super::{Class, Jet};
 
-/// More than this many quarter turns are not told apart.
+/// More than this many quarter turns are not distinguished.
 const MOST_QUARTERS: f64 = 1e12;
 
 /// The largest second derivative of the arctangent, 3√3/8, rounded up.

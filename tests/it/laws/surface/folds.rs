@@ -83,7 +83,7 @@ fn assert_smooth(found: &[DVec2], expected: &[DVec2], what: &str) {
     assert!(usual < SMOOTHNESS_MM && most < BEYOND_MM, "{what}: {usual} mm, at most {most} mm");
 }
 
-/// Towards the eye from a point.
+/// Toward the eye from a point.
 fn to_eye(camera: &Camera, p: DVec3) -> DVec3 {
     match camera.projection() {
         Projection::Perspective { .. } => camera.eye() - p,

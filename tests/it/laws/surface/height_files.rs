@@ -293,7 +293,7 @@ fn npz_archives_tell_heights_from_coordinates_or_say_why_not() {
             &[square, ("x", "(2, 1)", &four[..2])],
             "NPZ: array `x`: it must be as large as the array of heights",
         ),
-        (&[("z", "(2, x)", four)], "NPZ: array `z`: NPY: the shape is not readable"),
+        (&[("z", "(2, x)", four)], "NPZ: array `z`: NPY: the shape cannot be read"),
     ] {
         assert_eq!(error(npz(arrays)), message);
     }

@@ -84,7 +84,7 @@ fn what_cannot_be_shown_is_told_before_anything_is_served() {
     };
     assert_fails(&view(&["nothing.obj"]), 1, "nothing.obj");
     assert_fails(&view(&["bad.obj"]), 1, "bad.obj:2");
-    assert_fails(&view(&[]), 2, "give models, or a surface by --expr");
+    assert_fails(&view(&[]), 2, "specify models, or a surface with --expr");
     assert_fails(&view(&["cube.obj", "--levels", "3"]), 2, "--levels is for surfaces");
     assert_fails(&view(&["--expr", "x", "--weld", "1"]), 2, "--weld is for models");
     assert_fails(&view(&["cube.obj", "--lines", "nosuch"]), 2, "nosuch");
