@@ -82,6 +82,12 @@ impl Boxes {
     }
 }
 
+/// A power of two that brings sizes to about 1, so that none is out of the range of single precision.
+fn to_single(size: DVec3) -> f64 {
+    let (_, exponent) = libm::frexp(size.max_element());
+    libm::ldexp(1.0, -exponent.clamp(-1000, 1000))
+}
+
 /// Triangles by their boxes.
 #[derive(Debug)]
 pub(super) struct BoxTree {
@@ -105,13 +111,15 @@ impl BoxTree {
             .reduce(|| (DVec3::INFINITY, DVec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
         // Halves first: the sum may be too large for a number.
         let middle = low * 0.5 + high * 0.5;
+        let scale = to_single(high * 0.5 - low * 0.5);
+        let place = |p: DVec3| ((p - middle) * scale).as_vec3();
         let placed: Vec<Vec3> =
-            positions.par_iter().with_min_len(1 << 14).map(|&p| (p - middle).as_vec3()).collect();
+            positions.par_iter().with_min_len(1 << 14).map(|&p| place(p)).collect();
         let box_of = |triangle: u32| {
             let [p, q, r] = triangles[triangle as usize].map(|v| placed[v as usize]);
             (p.min(q).min(r), p.max(q).max(r))
         };
-        let (low, high) = ((low - middle).as_vec3(), (high - middle).as_vec3());
+        let (low, high) = (place(low), place(high));
         let cells = (1u32 << MORTON_BITS) as f32 / (high - low).max_element();
         let mut keys: Vec<u64> = of
             .into_par_iter()

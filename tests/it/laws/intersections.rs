@@ -423,3 +423,25 @@ fn models_cross_where_they_are_moved_to() {
     let (_, message) = draw_boxes(&["0,0,0", "0,0,-5", "1,0,0"], "all");
     assert!(message.contains("--move is given 3 times for 2 models"), "{message}");
 }
+
+#[test]
+fn sizes_beyond_single_precision_change_nothing() {
+    let mut n_lines = 0;
+    for seed in 0..30 {
+        let scene = random(seed);
+        let expected = lines(&built(&scene));
+        n_lines += expected.len();
+        for exponent in [-400, -140, 127, 140, 400] {
+            let factor = 2f64.powi(exponent);
+            let mut scaled = random(seed);
+            scaled.positions.iter_mut().flatten().for_each(|x| *x *= factor);
+            let found = lines(&built(&scaled));
+            assert_eq!(found.len(), expected.len(), "{seed}, 2^{exponent}");
+            for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+                let off = (*found / factor - *expected).length();
+                assert!(off < 1e-12, "{seed}, 2^{exponent}: {off}");
+            }
+        }
+    }
+    assert!(n_lines > 40, "{n_lines}");
+}
