@@ -20,6 +20,9 @@ const MAX_POINTS: usize = 16;
 /// Millimeters by which a page may differ from the paper it is drawn on.
 const SIZE_TOLERANCE_MM: f64 = 1.0;
 
+/// Plotter units by which a point may lie beyond the hard clip limits: it is rounded to the limit.
+const AT_LIMIT: f64 = 0.49;
+
 /// A plotter.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -374,8 +377,8 @@ pub fn write(plot: &Plot, profile: &LoadedPlotter, out: &mut dyn io::Write) -> i
     if let Some(ps) = paper.ps {
         write!(out, "PS{ps};")?;
     }
-    let low = dvec2(f64::from(paper.x[0]), f64::from(paper.y[0]));
-    let high = dvec2(f64::from(paper.x[1]), f64::from(paper.y[1]));
+    let low = dvec2(f64::from(paper.x[0]), f64::from(paper.y[0])) - AT_LIMIT;
+    let high = dvec2(f64::from(paper.x[1]), f64::from(paper.y[1])) + AT_LIMIT;
     for layer in plot.plotted_layers() {
         if layer.lines.is_empty() {
             continue;

@@ -386,12 +386,17 @@ fn what_lies_in_reach_is_not_cut_and_what_does_not_is() {
                 let middle = low.midpoint(high);
                 let ends = |by: f64| {
                     let (a, b) = (low - by, high + by);
+                    // Along the border of the reach, lines at one coordinate are all or nothing.
+                    let at = if by == 0.0 { low } else { middle };
+                    let far = if by == 0.0 { high } else { middle };
                     [
-                        [dvec2(a.x, middle.y), dvec2(b.x, middle.y)],
-                        [dvec2(middle.x, a.y), dvec2(middle.x, b.y)],
+                        [dvec2(a.x, at.y), dvec2(b.x, at.y)],
+                        [dvec2(at.x, a.y), dvec2(at.x, b.y)],
+                        [dvec2(a.x, far.y), dvec2(b.x, far.y)],
+                        [dvec2(far.x, a.y), dvec2(far.x, b.y)],
                     ]
                 };
-                for (by, cut) in [(-0.1, false), (0.5, true)] {
+                for (by, cut) in [(-0.1, false), (0.0, false), (0.5, true)] {
                     plot.layers[0].lines = Polylines::default();
                     ends(by).iter().for_each(|line| plot.layers[0].lines.push(*line));
                     let bytes = written(|out| hpgl::write(&plot, &profile, out));
