@@ -173,10 +173,19 @@ pub enum ViewError {
         "coordinates of {0:e} are too large for any camera to show the whole scene; scale the model down"
     )]
     TooLarge(f64),
+    /// The scene is so far from the origin that an eye as far from it as it is large gets other coordinates.
+    #[error(
+        "coordinates of {0:e} are too large for a model of this size: it is lost in their rounding; move \
+         it to the origin"
+    )]
+    TooFarOut(f64),
     /// The parameters do not define a valid camera.
     #[error(transparent)]
     Camera(#[from] CameraError),
 }
+
+/// Most of the distance between eye and target that may be lost in rounding.
+const LOST_IN_ROUNDING: f64 = 0.01;
 
 impl View {
     /// A named view, orthographic by default.
@@ -317,7 +326,11 @@ impl View {
             None => self.distance_that_shows(bounds, target)?,
         };
         let size = distance.max(target.abs().max_element());
-        let offset = on_grid(towards_eye * distance, power_of_two_at(size), OFFSET_GRID_EXPONENT);
+        let wanted = towards_eye * distance;
+        let offset = on_grid(wanted, power_of_two_at(size), OFFSET_GRID_EXPONENT);
+        if (target + offset - target - wanted).abs().max_element() > LOST_IN_ROUNDING * distance {
+            return Err(ViewError::TooFarOut(target.abs().max_element()));
+        }
         Ok(offset)
     }
 

@@ -471,3 +471,15 @@ fn the_help_lists_kinds_of_line_one_a_line() {
         assert!(help.lines().any(|line| line.trim_start().starts_with(&format!("{kind}  "))));
     }
 }
+
+#[test]
+fn models_far_from_the_origin_are_not_said_to_be_seen_from_themselves() {
+    let (_keep, folder) = with_files();
+    for (shift, code) in [("1e6", 0), ("1e12", 0), ("1e17", 1), ("1e300", 1), ("1e308", 1)] {
+        let shift = format!("{shift},0,0");
+        let draw = ["draw", "cube.obj", "--move", &shift, "-o", "far.svg"];
+        let stderr = told(&folder, &draw, code);
+        assert_eq!(stderr.contains("too large for a model of this size"), code == 1, "{stderr}");
+        assert!(!stderr.contains("same point"), "{stderr}");
+    }
+}
