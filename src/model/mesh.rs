@@ -71,6 +71,32 @@ impl Default for PolygonSoup {
 }
 
 impl PolygonSoup {
+    /// The same with positions in the order in which faces, then segments, use them, and unused ones last.
+    /// So the same model gives the same drawing in whatever format it comes. Nothing changes if an index
+    /// is out of range. O(positions + corners).
+    #[must_use]
+    pub fn in_order_of_use(mut self) -> Self {
+        let n = self.positions.len();
+        let mut numbers = vec![u32::MAX; n];
+        let mut order: Vec<u32> = Vec::with_capacity(n);
+        for &index in self.corners.iter().chain(self.wires.as_flattened()) {
+            let Some(number) = numbers.get_mut(index as usize) else { return self };
+            if *number == u32::MAX {
+                *number = order.len() as u32;
+                order.push(index);
+            }
+        }
+        if order.iter().zip(0..).all(|(index, k)| *index == k) {
+            return self;
+        }
+        order.extend((0..n as u32).filter(|index| numbers[*index as usize] == u32::MAX));
+        self.positions = order.iter().map(|index| self.positions[*index as usize]).collect();
+        for index in self.corners.iter_mut().chain(self.wires.as_flattened_mut()) {
+            *index = numbers[*index as usize];
+        }
+        self
+    }
+
     /// Appends one face.
     pub fn push_face(&mut self, corners: &[u32]) {
         self.corners.extend_from_slice(corners);

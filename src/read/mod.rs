@@ -295,7 +295,7 @@ fn read_model(
     }?;
     parsed.check_vertices()?;
     let vertices = parsed.soup.positions.len() + parsed.unused_vertices;
-    let (mesh, mut repairs) = Mesh::new(parsed.soup).map_err(Fault::from)?;
+    let (mesh, mut repairs) = Mesh::new(parsed.soup.in_order_of_use()).map_err(Fault::from)?;
     repairs.degenerate_faces += parsed.degenerate_faces;
     repairs.unused_vertices += parsed.unused_vertices;
     if mesh.n_faces() == 0 && mesh.wires().is_empty() {

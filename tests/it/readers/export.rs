@@ -25,7 +25,6 @@ impl Triangles {
             xyz(2.15, -1.7, 4.4),
             xyz(2.15, 2.9, 4.4),
         ];
-        // In the order in which points are first used, so that all formats number them alike.
         let triangles = vec![
             [0, 2, 1],
             [0, 3, 2],
@@ -44,22 +43,6 @@ impl Triangles {
             [7, 4, 8],
             [7, 8, 9],
         ];
-        Self { points, triangles }.in_order_of_use()
-    }
-
-    /// The same with points numbered as the triangles meet them.
-    pub(crate) fn in_order_of_use(self) -> Self {
-        let mut number = vec![None; self.points.len()];
-        let mut points = Vec::new();
-        let triangles = self.triangles.iter().map(|triangle| {
-            triangle.map(|corner| {
-                *number[corner as usize].get_or_insert_with(|| {
-                    points.push(self.points[corner as usize]);
-                    points.len() as u32 - 1
-                })
-            })
-        });
-        let triangles = triangles.collect();
         Self { points, triangles }
     }
 
