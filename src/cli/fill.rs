@@ -148,7 +148,7 @@ impl FillArgs {
         let mut output = output.options(false)?;
         output.warnings.extend(hatch.without_effect(false, &[]));
         output.warnings.extend(idle);
-        if !output.format.has_fills() {
+        if !output.format.has_fills() && (edges.no_edges || areas.white) {
             let error = NoFills(output.format);
             return Err(format!(
                 "{error}; use another --format, or draw lines with `hiddenline draw`"
@@ -354,7 +354,16 @@ impl Picture<'_> {
             title: job.input.title(),
             source: source::source(config::arguments()),
         };
-        let mut placed = page.plot(&edges, options).with_fills(&page, &filled.layers, job.seam_mm);
+        let format = job.output.format;
+        let layers = if format.has_fills() { &filled.layers[..] } else { &[] };
+        if !format.has_fills() {
+            let n = filled.layers.iter().map(|layer| layer.fills.len()).sum();
+            let areas = counted(n, "area is", "areas are");
+            run.notes
+                .warnings
+                .push(format!("{} holds lines only: {areas} left out", format.name()));
+        }
+        let mut placed = page.plot(&edges, options).with_fills(&page, layers, job.seam_mm);
         if job.edges.is_none() || job.paints_over {
             let is_drawn = |layer: &Layer| !layer.fills.is_empty() || !layer.lines.is_empty();
             placed.plot.layers.retain(is_drawn);

@@ -81,7 +81,7 @@ fn what_cannot_be_filled_is_refused_and_leaves_files_alone() {
     std::fs::write(&file, "kept").unwrap();
     let name = file.to_str().unwrap();
     for (arguments, code, message) in [
-        (vec![SPOT, "--format", "hpgl", "-o", name], 2, "no filled areas"),
+        (vec![SPOT, "--no-edges", "--format", "hpgl", "-o", name], 2, "no filled areas"),
         (vec![SPOT, "--palette", "0", "-o", name], 2, "from 1 to 64 inks"),
         (vec![SPOT, "--palette", "nocolor", "-o", name], 2, "is not a color"),
         (vec![SPOT, "--palette", "3", "--debug", "order", "-o", name], 2, "cannot be used"),
@@ -320,4 +320,33 @@ fn filled_surfaces_have_the_axes_of_their_drawings() {
     assert_eq!(n_paths(&["--no-axes"]), bare);
     let (_, said) = draw(&["--expr", "x*y", "--axes", "box", "--turntable", "2", "-o", "o.svg"]);
     assert!(said.contains("--axes has no effect with --turntable"), "{said}");
+}
+
+#[test]
+fn plotters_get_the_edges_and_hatching_without_the_areas() {
+    let keep = tempfile::tempdir().unwrap();
+    let folder = keep.path();
+    std::fs::write(folder.join("cube.obj"), super::CUBE).unwrap();
+    for (format, machine) in [("plt", "hp7475a"), ("gcode", ""), ("dxf", "")] {
+        let (filled, drawn) = (format!("filled.{format}"), format!("drawn.{format}"));
+        let machine = if machine.is_empty() { vec![] } else { vec!["--machine", machine] };
+        let fill = [&["fill", "cube.obj", "--edges", "-o", &filled], &machine[..]].concat();
+        let output = hiddenline(folder, &fill);
+        let stderr = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{stderr}");
+        assert!(stderr.contains("holds lines only: 3 areas are left out"), "{stderr}");
+        let draw = [&["draw", "cube.obj", "-o", &drawn], &machine[..]].concat();
+        assert_eq!(hiddenline(folder, &draw).status.code(), Some(0));
+        let [filled, drawn] =
+            [&filled, &drawn].map(|name| std::fs::read(folder.join(name)).unwrap());
+        let body =
+            |bytes: &[u8]| text(bytes).lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+        if format == "plt" {
+            assert_eq!(body(&filled), body(&drawn));
+        }
+        let strict = [&fill[..], &["--strict"]].concat();
+        assert_eq!(hiddenline(folder, &strict).status.code(), Some(1));
+        let areas = ["fill", "cube.obj", "--no-edges", "-o", fill[4]];
+        assert_ne!(hiddenline(folder, &areas).status.code(), Some(0));
+    }
 }
