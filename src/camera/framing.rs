@@ -173,6 +173,9 @@ pub enum ViewError {
         "coordinates of {0:e} are too large for any camera to show the whole scene; scale the model down"
     )]
     TooLarge(f64),
+    /// The scene is so small that products of its coordinates are 0.
+    #[error("a size of {0:e} is too small for any drawing; scale the model up")]
+    TooSmall(f64),
     /// The scene is so far from the origin that an eye as far from it as it is large gets other coordinates.
     #[error(
         "coordinates of {0:e} are too large for a model of this size: it is lost in their rounding; move \
@@ -183,6 +186,9 @@ pub enum ViewError {
     #[error(transparent)]
     Camera(#[from] CameraError),
 }
+
+/// Smaller scenes are not drawn: products of their coordinates have no digits left.
+const SMALLEST_SIZE: f64 = 1e-150;
 
 /// Most of the distance between eye and target that may be lost in rounding.
 const LOST_IN_ROUNDING: f64 = 0.01;
@@ -346,6 +352,10 @@ impl View {
         let distance = radius / libm::sin(half_angle);
         let step = power_of_two_at(distance) * libm::exp2(f64::from(1 - DISTANCE_BITS));
         let rounded_up = (distance / step).ceil() * step;
+        let size = farthest.max_element();
+        if size > 0.0 && size < SMALLEST_SIZE {
+            return Err(ViewError::TooSmall(size));
+        }
         if !radius.is_finite() || distance.is_infinite() && half_angle > 0.0 {
             let largest = low.abs().max(high.abs()).max_element();
             return Err(ViewError::TooLarge(largest));

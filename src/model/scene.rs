@@ -227,12 +227,23 @@ impl Scene {
         if self.points.is_empty() { self.mesh.positions() } else { &self.points }
     }
 
-    /// The Newell normal of each face, not normalized. Computed on first use; O(corners), in
-    /// parallel.
+    /// The Newell normal of each face, not normalized. Where coordinates are extremely large or small it
+    /// is that of the scene scaled by a power of two. Computed on first use; O(corners), in parallel.
     pub fn normals(&self) -> &[DVec3] {
         computed_once::<Vec<DVec3>>(&self.normals, || {
+            let positions = self.mesh.positions();
+            let sizes = positions.par_iter().map(|p| p.abs().max_element());
+            let (_, exponent) = libm::frexp(sizes.reduce(|| 0.0, f64::max));
+            let scaled: Vec<DVec3>;
+            let positions = if exponent.abs() <= MOST_EXPONENT {
+                positions
+            } else {
+                let factor = libm::ldexp(1.0, -exponent.clamp(-1000, 1000));
+                scaled = positions.par_iter().map(|&p| p * factor).collect();
+                &scaled
+            };
             let faces = (0..self.mesh.n_faces() as u32).into_par_iter();
-            faces.map(|face| newell_normal(self.mesh.positions(), self.mesh.face(face))).collect()
+            faces.map(|face| newell_normal(positions, self.mesh.face(face))).collect()
         })
     }
 
@@ -305,6 +316,10 @@ fn dihedral(uses: &[EdgeUse], normals: &[DVec3]) -> Dihedral {
     let dot = if first.runs_upwards() == second.runs_upwards() { -a.dot(b) } else { a.dot(b) };
     Dihedral { dot, lengths: a.length() * b.length() }
 }
+
+/// Coordinates up to this power of two, and down to its inverse, have products of four that are in the range
+/// of numbers: dot products of normals.
+const MOST_EXPONENT: i32 = 200;
 
 /// The value of a cell, computed if it is empty.
 ///

@@ -483,3 +483,24 @@ fn models_far_from_the_origin_are_not_said_to_be_seen_from_themselves() {
         assert!(!stderr.contains("same point"), "{stderr}");
     }
 }
+
+#[test]
+fn models_of_any_size_have_the_same_drawing() {
+    let (_keep, folder) = with_files();
+    let drawn = |scale: &str| {
+        let draw = ["draw", "cube.obj", "--scale", scale, "-o", "sized.svg", "-q"];
+        told(&folder, &draw, 0);
+        let svg = fs::read_to_string(folder.join("sized.svg")).unwrap();
+        svg.lines().filter(|line| line.starts_with("<path")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let expected = drawn("1");
+    assert!(!expected.is_empty());
+    // Powers of two change no digit.
+    for exponent in [-480, -380, -200, 200, 400] {
+        assert_eq!(drawn(&format!("{:e}", 2f64.powi(exponent))), expected, "2^{exponent}");
+    }
+    for scale in ["1e-160", "1e-300"] {
+        let draw = ["draw", "cube.obj", "--scale", scale, "-o", "tiny.svg"];
+        fails(&folder, &draw, 1, "too small for any drawing; scale the model up");
+    }
+}
