@@ -12,7 +12,7 @@ use clap::Args;
 use glam::DVec2;
 use hiddenline::stages::camera::Camera;
 use hiddenline::stages::drafting::Drafted;
-use hiddenline::stages::draw::{DrawOptions, MeshSize, draw};
+use hiddenline::stages::draw::{DrawOptions, MeshSize, draw, draw_watched};
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::hatch::{Ground, HatchOptions, HatchPage, hatch, shadow_outlines};
 use hiddenline::stages::model::scene::Scene;
@@ -200,7 +200,10 @@ fn strokes(
     run.dxf_scale = page::dxf_in_unit(job.dxf_scale, &page, unit_mm);
     run.progress.stage("drawing");
     let sheet = PlacedPage::new(extent, camera, &page)?;
-    let mut drawn = draw(scene, &camera, &job.draw, sheet.page.mm_per_image_unit());
+    let mm_per_unit = sheet.page.mm_per_image_unit();
+    let mut drawn = draw_watched(scene, &camera, &job.draw, mm_per_unit, &mut |share| {
+        run.progress.share(share);
+    });
     if job.draw.lines.contains(StrokeKind::Shadow) {
         run.progress.stage("finding shadows");
         let mm_per_unit = sheet.page.mm_per_image_unit();
