@@ -57,7 +57,8 @@ fn of_many_requests_of_a_page_the_last_is_drawn() {
             .filter(|reply| reply.status == 200)
             .map(|reply| reply.words()[1])
             .collect();
-        assert!(replies.iter().all(|reply| [200, 409].contains(&reply.status)));
+        // Connections of the round before may not be closed yet, and count.
+        assert!(replies.iter().all(|reply| [200, 409, 503].contains(&reply.status)));
         assert!(!drawn.is_empty());
     }
     let last = viewer.draw(&serde_json::from_str(&body(999)).unwrap());
