@@ -6,6 +6,7 @@ use glam::{DVec2, Vec2Swizzles, dvec2};
 use hiddenline::stages::optimize::estimate::{Motion, estimate_lines};
 use hiddenline::stages::optimize::{
     Effort, Graph, Joints, OptimizeOptions, optimize, optimize_lines, optimize_watched, order,
+    split_by_distance,
 };
 use hiddenline::stages::plot::{Layer, Pen, Plot, Polylines};
 use proptest::prelude::*;
@@ -477,10 +478,35 @@ fn layers_are_split_between_strokes() {
     let lines = polylines(&[stroke(0.0), stroke(1.0), stroke(2.0), stroke(3.0), stroke(4.0)]);
     let layer = Layer { number: 1, name: "visible".to_owned(), pen, lines, ..Layer::default() };
     let plot = Plot { width_mm: 200.0, height_mm: 10.0, layers: vec![layer], ..Plot::default() };
-    let split = hiddenline::stages::optimize::split_by_distance(&plot, 250.0, None);
+    let split = split_by_distance(&plot, 250.0, None);
     let parts: Vec<(u32, usize)> = split.layers.iter().map(|l| (l.number, l.lines.len())).collect();
     assert_eq!(parts, [(1, 2), (2, 2), (3, 1)]);
-    assert_eq!(hiddenline::stages::optimize::split_by_distance(&plot, 500.0, None), plot);
+    assert_eq!(split_by_distance(&plot, 500.0, None), plot);
+}
+
+#[test]
+fn parts_of_bent_strokes_overlap_by_the_length_asked_for() {
+    // A stair of steps of 0.4 mm, so that overlaps and cuts fall inside steps.
+    let stair: Vec<DVec2> =
+        (0..200).map(|k| 0.4 * dvec2(f64::from((k + 1) / 2), f64::from(k / 2))).collect();
+    let pen = Pen { width_mm: 0.3, color: "#000000".to_owned() };
+    let layer = Layer { number: 1, pen, lines: polylines(&[stair]), ..Layer::default() };
+    let plot = Plot { width_mm: 200.0, height_mm: 50.0, layers: vec![layer], ..Plot::default() };
+    let whole = plot.layers[0].lines.length_mm();
+    for overlap in [0.0, 0.1, 0.4, 1.0, 3.3] {
+        let parts = split_by_distance(&plot, 10.0, Some(overlap)).layers;
+        let n_cuts = parts.len() as f64 - 1.0;
+        let drawn: f64 = parts.iter().map(|layer| layer.lines.length_mm()).sum();
+        assert!(n_cuts > 6.0 && (drawn - whole - n_cuts * overlap).abs() < 1e-9, "{overlap}");
+        for pair in parts.windows(2) {
+            let [before, after] = [&pair[0].lines, &pair[1].lines]
+                .map(|lines| lines.iter().next().expect("a stroke").to_vec());
+            // The next part begins on the stair, so far before the end of the last.
+            let along = |p: DVec2| p.x + p.y;
+            let back = along(before[before.len() - 1]) - along(after[0]);
+            assert!((back - overlap).abs() < 1e-9, "{overlap}: {back}");
+        }
+    }
 }
 
 #[test]
