@@ -1,6 +1,6 @@
 //! Layers: which groups they are, what each pen draws, and which number it has.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use glam::DVec2;
 use roxmltree::Node;
@@ -101,28 +101,33 @@ impl PenLines {
 }
 
 /// Gives each pen the number its label begins with, or the next one that is free. Numbers of labels
-/// come first and in order.
+/// come first and in order. Layers of one color whose labels begin with the same number share a pen; of
+/// other colors the first has it.
 pub(super) fn numbered(mut pens: Vec<PenLines>) -> Vec<Layer> {
     pens.retain(|pen| !pen.lines.is_empty());
-    pens.sort_by_key(|pen| pen.label.as_deref().and_then(label_number).unwrap_or(u32::MAX));
-    let mut taken: BTreeSet<u32> = BTreeSet::new();
-    let numbers: Vec<Option<u32>> = pens
-        .iter()
-        .map(|pen| pen.label.as_deref().and_then(label_number).filter(|&n| taken.insert(n)))
-        .collect();
-    let mut next = 1;
-    let mut layers = Vec::with_capacity(pens.len());
-    for (pen, number) in pens.into_iter().zip(numbers) {
-        let number = number.unwrap_or_else(|| {
-            while !taken.insert(next) {
-                next += 1;
-            }
-            next
-        });
+    let label_number = |pen: &PenLines| pen.label.as_deref().and_then(label_number);
+    pens.sort_by_key(|pen| label_number(pen).unwrap_or(u32::MAX));
+    let mut colors: BTreeMap<u32, String> = BTreeMap::new();
+    for pen in &pens {
+        if let Some(number) = label_number(pen) {
+            colors.entry(number).or_insert_with(|| pen.pen.color.clone());
+        }
+    }
+    let mut free = (1..).filter(|number| !colors.contains_key(number));
+    let mut layers: Vec<Layer> = Vec::with_capacity(pens.len());
+    for pen in pens {
+        let own = label_number(&pen).filter(|number| colors.get(number) == Some(&pen.pen.color));
+        let number = own.or_else(|| free.next()).unwrap_or(u32::MAX);
         let name = match &pen.label {
             Some(label) => label_name(label),
             None => pen.pen.color.trim_start_matches('#').to_owned(),
         };
+        let n_alike = layers
+            .iter()
+            .filter(|layer| layer.number == number)
+            .filter(|layer| layer.name.strip_prefix(&*name).is_some_and(is_count))
+            .count();
+        let name = if n_alike == 0 { name } else { format!("{name}-{}", n_alike + 1) };
         layers.push(Layer {
             number,
             name,
@@ -133,6 +138,11 @@ pub(super) fn numbered(mut pens: Vec<PenLines>) -> Vec<Layer> {
         });
     }
     layers
+}
+
+/// Nothing, or what tells layers of one name apart.
+fn is_count(rest: &str) -> bool {
+    rest.is_empty() || rest.strip_prefix('-').is_some_and(|n| n.bytes().all(|c| c.is_ascii_digit()))
 }
 
 /// The number at the start of a label, after `%` and `!`.

@@ -48,8 +48,8 @@ pub struct GcodeProfile {
     /// After each layer.
     #[serde(default)]
     pub layer_end: String,
-    /// Between two layers, before the start of the second one, to change pens; also before a first layer
-    /// that requests a pause.
+    /// Between two layers of different pens, before the start of the second one; also before a layer that
+    /// requests a pause.
     #[serde(default)]
     pub pen_change: String,
     /// At the end of the file.
@@ -214,13 +214,13 @@ pub fn write(plot: &Plot, profile: &GcodeProfile, out: &mut dyn io::Write) -> io
     only_lines(plot, Format::Gcode)?;
     let mut writer = Writer { plot, profile, layer: None, text: String::new() };
     writer.expand(&profile.start, 0.0, 0.0);
-    let mut first = true;
+    let mut last_pen = None;
     for layer in plot.plotted_layers().filter(|layer| !layer.lines.is_empty()) {
         writer.layer = Some(layer);
-        if !first || layer.pauses() {
+        if last_pen.is_some_and(|number| number != layer.number) || layer.pauses() {
             writer.expand(&profile.pen_change, 0.0, 0.0);
         }
-        first = false;
+        last_pen = Some(layer.number);
         writer.expand(&profile.layer_start, 0.0, 0.0);
         for line in layer.lines.iter().filter(|line| line.iter().all(|p| p.is_finite())) {
             for (i, p) in line.iter().enumerate() {

@@ -5,7 +5,7 @@
 //! controls in a layer's label, `!` becomes the machine's pause and `+S` a pen speed, where the machine
 //! has them. No crate writes HPGL.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use glam::{DVec2, dvec2};
@@ -335,20 +335,21 @@ impl Plotter {
     /// kept, and other layers get the lowest free ones, in order.
     ///
     /// # Errors
-    /// [`PlotterError::TooManyPens`] if more layers have ink than the machine has pens.
+    /// [`PlotterError::TooManyPens`] if layers of more numbers have ink than the machine has pens.
     pub fn assign_pens(&self, plot: &mut Plot) -> Result<(), PlotterError> {
         plot.layers.retain(|layer| !layer.lines.is_empty() && layer.is_plotted());
-        if plot.layers.len() > self.pens as usize {
-            let (machine, needed) = (self.title.clone(), plot.layers.len());
+        let numbers: BTreeSet<u32> = plot.layers.iter().map(|layer| layer.number).collect();
+        if numbers.len() > self.pens as usize {
+            let (machine, needed) = (self.title.clone(), numbers.len());
             return Err(PlotterError::TooManyPens { machine, needed, pens: self.pens });
         }
         let is_there = |number: u32| (1..=self.pens).contains(&number);
-        let numbers = plot.layers.iter().map(|layer| layer.number);
-        let mut taken: BTreeSet<u32> = numbers.filter(|&number| is_there(number)).collect();
-        for layer in plot.layers.iter_mut().filter(|layer| !is_there(layer.number)) {
-            let free = (1..=self.pens).find(|number| !taken.contains(number));
-            layer.number = free.unwrap_or(1);
-            taken.insert(layer.number);
+        let (known, other): (BTreeSet<u32>, BTreeSet<u32>) =
+            numbers.into_iter().partition(|n| is_there(*n));
+        let free = (1..=self.pens).filter(|number| !known.contains(number));
+        let pens: BTreeMap<u32, u32> = other.into_iter().zip(free).collect();
+        for layer in &mut plot.layers {
+            layer.number = pens.get(&layer.number).copied().unwrap_or(layer.number);
         }
         Ok(())
     }

@@ -585,3 +585,49 @@ fn machines_have_the_units_of_their_manuals() {
         }
     }
 }
+
+#[test]
+fn layers_of_one_number_are_drawn_by_one_pen() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='297mm' height='210mm' \
+               viewBox='0 0 297 210' fill='none' stroke='black' \
+               xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'>"
+        .to_owned();
+    let layers = [
+        ("2 a", 50),
+        ("2 b", 60),
+        ("3 c", 70),
+        ("!3+S30 d", 80),
+        ("2 a", 90),
+        ("9 e", 99),
+    ]
+    .map(|(label, y)| {
+        format!("<g inkscape:groupmode='layer' inkscape:label='{label}'><path d='M50 {y}h50'/></g>")
+    });
+    let svg = svg + &layers.concat() + "<path d='M50 40h50'/></svg>";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("pens.svg"), svg).unwrap();
+    let written = |name: &str, more: &[&str]| {
+        let arguments = [&["optimize", "pens.svg", "-o", name], more].concat();
+        let output = crate::program::hiddenline(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", crate::program::text(&output.stderr));
+        std::fs::read_to_string(folder.path().join(name)).unwrap()
+    };
+    // 9 is no pen of the machine: it takes the first that no label asks for, after what has no label.
+    let hpgl = written("pens.plt", &["--machine", "hp7475a"]);
+    let pens: Vec<&str> = hpgl.lines().filter(|line| line.starts_with("SP")).collect();
+    let pens: Vec<&str> = pens.iter().map(|line| &line[..3]).collect();
+    assert_eq!(pens, ["SP2", "SP2", "SP2", "SP3", "SP3", "SP4", "SP1"]);
+    let gcode = written("pens.gcode", &[]);
+    // To pen 3, the pause that its second label asks for, to pen 9, to pen 1.
+    assert_eq!(gcode.matches("put in pen").count(), 4, "{gcode}");
+    assert!(gcode.contains("put in pen 9"), "{gcode}");
+    // In SVG layers have names of their own.
+    let again = written("again.svg", &[]);
+    let document = roxmltree::Document::parse(&again).unwrap();
+    let ids: Vec<&str> = document
+        .descendants()
+        .filter_map(|n| n.attribute("id"))
+        .filter(|id| id.starts_with("pen"))
+        .collect();
+    assert_eq!(ids, ["pen2-a", "pen2-b", "pen2-a-2", "pen3-c", "pen3-d", "pen9-e", "pen1-000000"]);
+}
