@@ -159,7 +159,8 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         }];
     }
     let n_read = n_strokes(&plot);
-    let mut warnings: Vec<String> = read.warnings.into_iter().collect();
+    let mut warnings: Vec<String> =
+        read.warnings.iter().map(|warning| in_file(&name, warning)).collect();
     let sheet = match job.output.plotter() {
         // `--fit` fits the drawing into what the pen can reach.
         Some(machine) if job.sheet.fit => {
@@ -249,4 +250,12 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     io::stdin().lock().read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// A message about a file, with the line, if it begins with one.
+fn in_file(name: &str, message: &str) -> String {
+    match message.strip_prefix("line ").and_then(|rest| rest.split_once(": ")) {
+        Some((line, message)) => format!("{name}:{line}: {message}"),
+        None => format!("{name}: {message}"),
+    }
 }

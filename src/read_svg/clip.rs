@@ -72,8 +72,10 @@ impl<'a, 'input> Reader<'a, 'input> {
         let (style, own) = self.sheet.style(clip, &Style::default());
         let mut context = Context { style, clips: Vec::new(), depth: around.depth + 1, ..around };
         if let Some(text) = clip.attribute("transform") {
-            let bad_value = |()| self.bad_value(clip, "transform");
-            context.to_page *= transform::parse_attribute(text).map_err(bad_value)?;
+            match transform::parse_attribute(text) {
+                Ok(transform) => context.to_page *= transform,
+                Err(()) => self.warn_of_value(clip, "transform"),
+            }
         }
         let mut region = ClipRegion::default();
         if let Some(value) = &own.clip_path {

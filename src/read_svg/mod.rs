@@ -112,16 +112,6 @@ pub enum SvgError {
         /// How much there may be.
         limit: usize,
     },
-    /// Something that is not a number, or not one that can be drawn.
-    #[error("line {line}: {attribute}={value:?} cannot be read")]
-    Value {
-        /// Line of the file.
-        line: u32,
-        /// The attribute.
-        attribute: String,
-        /// The beginning of its value.
-        value: String,
-    },
     /// A point out of reach.
     #[error("line {line}: a coordinate is not a number or larger than ten kilometers")]
     Coordinate {
@@ -146,7 +136,7 @@ pub struct LineSvg {
     /// The page. Layers whose label begins with a number come first, in the order of these numbers;
     /// the others follow in order of appearance with the next free numbers.
     pub plot: Plot,
-    /// What was left out or taken for something else, each kind once.
+    /// What was left out or taken for something else, each kind once; `line N: ` first where it has a place.
     pub warnings: BTreeSet<String>,
 }
 

@@ -1,5 +1,6 @@
 //! The walk through the elements: what each adds to the drawing, where, and on which layer.
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
@@ -64,7 +65,7 @@ pub(super) struct Reader<'a, 'input> {
     n_elements: usize,
     width_mm: f64,
     height_mm: f64,
-    pub(super) warnings: BTreeSet<String>,
+    pub(super) warnings: RefCell<BTreeSet<String>>,
 }
 
 impl<'a, 'input> Reader<'a, 'input> {
@@ -100,7 +101,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             n_elements: 0,
             width_mm: 0.0,
             height_mm: 0.0,
-            warnings: BTreeSet::new(),
+            warnings: RefCell::default(),
         })
     }
 
@@ -109,42 +110,43 @@ impl<'a, 'input> Reader<'a, 'input> {
         if !self.covers.is_empty() {
             self.pens.iter_mut().for_each(|pen| pen.hide_below(&self.covers));
         }
-        (self.pens, self.warnings, [self.width_mm, self.height_mm])
+        (self.pens, self.warnings.into_inner(), [self.width_mm, self.height_mm])
     }
 
     pub(super) fn line_of(&self, node: Node<'_, '_>) -> u32 {
         self.document.text_pos_at(node.range().start).row
     }
 
-    pub(super) fn bad_value(&self, node: Node<'_, '_>, attribute: &str) -> SvgError {
-        let value = node.attribute(attribute).unwrap_or_default();
-        SvgError::Value {
-            line: self.line_of(node),
-            attribute: attribute.to_owned(),
-            value: value.chars().take(40).collect(),
-        }
+    /// Says that the value of an attribute cannot be read, which then is as if it were not there.
+    pub(super) fn warn_of_value(&self, node: Node<'_, '_>, attribute: &str) {
+        let value: String =
+            node.attribute(attribute).unwrap_or_default().chars().take(40).collect();
+        self.warn_at(node, &format!("{attribute}={value:?} cannot be read and is left out"));
     }
 
-    pub(super) fn warn_at(&mut self, node: Node<'_, '_>, message: &str) {
-        self.warnings.insert(format!("line {}: {message}", self.line_of(node)));
+    pub(super) fn warn_at(&self, node: Node<'_, '_>, message: &str) {
+        self.warn(format!("line {}: {message}", self.line_of(node)));
+    }
+
+    pub(super) fn warn(&self, message: String) {
+        self.warnings.borrow_mut().insert(message);
     }
 
     /// A length in user units; `of` is what a percentage is of.
-    pub(super) fn length(
-        &self,
-        node: Node<'_, '_>,
-        name: &str,
-        of: f64,
-    ) -> Result<Option<f64>, SvgError> {
-        let Some(text) = node.attribute(name) else { return Ok(None) };
-        parse_length(text, of).map_err(|()| self.bad_value(node, name))
+    pub(super) fn length(&self, node: Node<'_, '_>, name: &str, of: f64) -> Option<f64> {
+        let text = node.attribute(name).filter(|text| text.trim() != "auto")?;
+        let read = parse_length(text, of);
+        read.unwrap_or_else(|()| {
+            self.warn_of_value(node, name);
+            None
+        })
     }
 
     pub(super) fn read_page(&mut self, root: Node<'a, 'input>) -> Result<(), SvgError> {
-        let view_box = self.view_box(root)?;
+        let view_box = self.view_box(root);
         let natural = view_box.map_or([300.0, 150.0], |b| [b.w, b.h]);
-        let width = self.length(root, "width", natural[0])?.unwrap_or(natural[0]);
-        let height = self.length(root, "height", natural[1])?.unwrap_or(natural[1]);
+        let width = self.length(root, "width", natural[0]).unwrap_or(natural[0]);
+        let height = self.length(root, "height", natural[1]).unwrap_or(natural[1]);
         let (width_mm, height_mm) = (width * MM_PER_PX, height * MM_PER_PX);
         let sized = |v: f64| v > 0.0 && v <= MAX_COORDINATE_MM;
         if !sized(width_mm) || !sized(height_mm) {
@@ -167,9 +169,9 @@ impl<'a, 'input> Reader<'a, 'input> {
         self.read_children(root, &inner)
     }
 
-    fn view_box(&self, node: Node<'_, '_>) -> Result<Option<svgtypes::ViewBox>, SvgError> {
-        let Some(text) = node.attribute("viewBox") else { return Ok(None) };
-        text.parse().map(Some).map_err(|_| self.bad_value(node, "viewBox"))
+    fn view_box(&self, node: Node<'_, '_>) -> Option<svgtypes::ViewBox> {
+        let read = node.attribute("viewBox")?.parse();
+        read.map_err(|_| self.warn_of_value(node, "viewBox")).ok()
     }
 
     /// The context inside a picture that fills `size` at `corner` of the context around it.
@@ -184,9 +186,12 @@ impl<'a, 'input> Reader<'a, 'input> {
         inner.style = self.sheet.style(node, &around.style).0;
         inner.viewport = size;
         inner.to_page *= Affine::translate((corner[0], corner[1]));
-        let Some(view) = self.view_box(node)? else { return Ok(inner) };
+        let Some(view) = self.view_box(node) else { return Ok(inner) };
         let aspect: svgtypes::AspectRatio = match node.attribute("preserveAspectRatio") {
-            Some(text) => text.parse().map_err(|_| self.bad_value(node, "preserveAspectRatio"))?,
+            Some(text) => text.parse().unwrap_or_else(|_| {
+                self.warn_of_value(node, "preserveAspectRatio");
+                svgtypes::AspectRatio::default()
+            }),
             None => svgtypes::AspectRatio::default(),
         };
         let (fx, fy) = (size[0] / view.w, size[1] / view.h);
@@ -244,7 +249,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         }
         match name {
             "text" | "image" | "foreignObject" => {
-                self.warnings.insert(format!("<{name}> is not drawn: pens only follow lines"));
+                self.warn(format!("<{name}> is not drawn: pens only follow lines"));
                 return Ok(());
             }
             "svg" | "g" | "a" | "switch" | "use" | "path" | "line" | "polyline" | "polygon"
@@ -259,7 +264,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         context.to_page *= self.transform(node, &own, context.viewport)?;
         if self.purpose == Purpose::Strokes {
             if own.has_mask {
-                self.warnings.insert("masks are ignored: lines are drawn whole".to_owned());
+                self.warn("masks are ignored: lines are drawn whole".to_owned());
             }
             if let Some(clip_path) = &own.clip_path
                 && let Some(region) = self.clip_region(clip_path, node, &context)?
@@ -294,9 +299,10 @@ impl<'a, 'input> Reader<'a, 'input> {
                     return Ok(Affine::IDENTITY);
                 }
             },
-            (None, Some(text)) => {
-                transform::parse_attribute(text).map_err(|()| self.bad_value(node, "transform"))?
-            }
+            (None, Some(text)) => transform::parse_attribute(text).unwrap_or_else(|()| {
+                self.warn_of_value(node, "transform");
+                Affine::IDENTITY
+            }),
             (None, None) => return Ok(Affine::IDENTITY),
         };
         let Some(origin) = &own.transform_origin else { return Ok(parsed) };
@@ -339,12 +345,12 @@ impl<'a, 'input> Reader<'a, 'input> {
     ) -> Result<(), SvgError> {
         let [width, height] = context.viewport;
         let corner = [
-            self.length(node, "x", width)?.unwrap_or(0.0),
-            self.length(node, "y", height)?.unwrap_or(0.0),
+            self.length(node, "x", width).unwrap_or(0.0),
+            self.length(node, "y", height).unwrap_or(0.0),
         ];
         let size = [
-            self.length(node, "width", width)?.unwrap_or(width),
-            self.length(node, "height", height)?.unwrap_or(height),
+            self.length(node, "width", width).unwrap_or(width),
+            self.length(node, "height", height).unwrap_or(height),
         ];
         let mut inner = self.enter_view(node, context, corner, size)?;
         if !own.overflows {
@@ -357,18 +363,18 @@ impl<'a, 'input> Reader<'a, 'input> {
         const XLINK: &str = "http://www.w3.org/1999/xlink";
         let href = node.attribute("href").or(node.attribute((XLINK, "href"))).unwrap_or_default();
         let Some(&shown) = href.strip_prefix('#').and_then(|id| self.ids.get(id)) else {
-            self.warnings.insert(format!("<use> of {href:?}: no such element in this file"));
+            self.warn(format!("<use> of {href:?}: no such element in this file"));
             return Ok(());
         };
         let [width, height] = context.viewport;
         let corner = [
-            self.length(node, "x", width)?.unwrap_or(0.0),
-            self.length(node, "y", height)?.unwrap_or(0.0),
+            self.length(node, "x", width).unwrap_or(0.0),
+            self.length(node, "y", height).unwrap_or(0.0),
         ];
         if shown.tag_name().name() == "symbol" {
             let size = [
-                self.length(node, "width", width)?.unwrap_or(width),
-                self.length(node, "height", height)?.unwrap_or(height),
+                self.length(node, "width", width).unwrap_or(width),
+                self.length(node, "height", height).unwrap_or(height),
             ];
             let mut inner = self.enter_view(shown, context, corner, size)?;
             inner.depth += 1;
@@ -400,7 +406,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             ShapeOutline::new(context.to_page, self.options.tolerance_mm, self.segments_left());
         let damage = trace(node, &own.geometry, context.viewport, &mut outline, |name, of| {
             self.length(node, name, of)
-        })?;
+        });
         if let Some(damage) = damage {
             self.warn_at(node, &damage);
         }
@@ -484,7 +490,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             line.windows(2).map(|pair| length_of(pair[1] - pair[0])).sum()
         };
         let length: f64 = lines.iter().map(walk).sum();
-        if let Some(stated) = self.length(node, "pathLength", 0.0)?.filter(|&length| length > 0.0) {
+        if let Some(stated) = self.length(node, "pathLength", 0.0).filter(|&length| length > 0.0) {
             dashes = dashes.scaled(length / stated);
         }
         if dashes.n_dashes(length) > self.segments_left() as f64 {

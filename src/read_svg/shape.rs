@@ -5,8 +5,8 @@ use kurbo::{Affine, Arc, Ellipse, PathEl, Point, Shape, SvgArc, Vec2};
 use roxmltree::Node;
 use svgtypes::{PathParser, PathSegment, PointsParser};
 
+use super::MAX_COORDINATE_MM;
 use super::style::parse_length;
-use super::{MAX_COORDINATE_MM, SvgError};
 use crate::plot::Polylines;
 
 /// Share of the tolerance spent on turning arcs into cubic curves.
@@ -204,8 +204,8 @@ pub(super) fn trace(
     css: &[(String, String)],
     viewport: [f64; 2],
     outline: &mut ShapeOutline,
-    attribute: impl Fn(&str, f64) -> Result<Option<f64>, SvgError>,
-) -> Result<Option<String>, SvgError> {
+    attribute: impl Fn(&str, f64) -> Option<f64>,
+) -> Option<String> {
     let [width, height] = viewport;
     let diagonal = ((width * width + height * height) / 2.0).sqrt();
     let from_css = |name: &str| {
@@ -213,24 +213,24 @@ pub(super) fn trace(
     };
     let length = |name: &str, of: f64| match from_css(name) {
         Some(text) => match parse_length(text, of) {
-            Ok(length) => Ok(length),
+            Ok(length) => length,
             // What cannot be read in CSS has no effect.
             Err(()) => attribute(name, of),
         },
         None => attribute(name, of),
     };
-    let number = |name: &str, of: f64| Ok::<_, SvgError>(length(name, of)?.unwrap_or(0.0));
+    let number = |name: &str, of: f64| length(name, of).unwrap_or(0.0);
     match node.tag_name().name() {
         "path" => {
             let data = match from_css("d") {
                 Some(css) => css_path(css),
                 None => node.attribute("d").unwrap_or_default(),
             };
-            return Ok(trace_path(data, outline));
+            return trace_path(data, outline);
         }
         "line" => {
-            outline.move_to(Point::new(number("x1", width)?, number("y1", height)?));
-            outline.line_to(Point::new(number("x2", width)?, number("y2", height)?));
+            outline.move_to(Point::new(number("x1", width), number("y1", height)));
+            outline.line_to(Point::new(number("x2", width), number("y2", height)));
         }
         name @ ("polyline" | "polygon") => {
             let text = node.attribute("points").unwrap_or_default();
@@ -248,16 +248,16 @@ pub(super) fn trace(
                 outline.close();
             }
             if 2 * n_read < n_numbers(text) {
-                return Ok(Some(format!(
+                return Some(format!(
                     "the points of <{name}> are drawn up to an error after the first {n_read}"
-                )));
+                ));
             }
         }
         "rect" => {
-            let (x, y) = (number("x", width)?, number("y", height)?);
-            let (w, h) = (number("width", width)?, number("height", height)?);
-            let rx = length("rx", width)?;
-            let ry = length("ry", height)?;
+            let (x, y) = (number("x", width), number("y", height));
+            let (w, h) = (number("width", width), number("height", height));
+            let rx = length("rx", width);
+            let ry = length("ry", height);
             let radius = |own: Option<f64>, other: Option<f64>, side: f64| {
                 own.or(other).unwrap_or(0.0).clamp(0.0, side / 2.0)
             };
@@ -266,10 +266,14 @@ pub(super) fn trace(
             }
         }
         "circle" | "ellipse" => {
-            let center = Point::new(number("cx", width)?, number("cy", height)?);
+            let center = Point::new(number("cx", width), number("cy", height));
             let radii = match node.tag_name().name() {
-                "circle" => Vec2::splat(number("r", diagonal)?),
-                _ => Vec2::new(number("rx", width)?, number("ry", height)?),
+                "circle" => Vec2::splat(number("r", diagonal)),
+                _ => {
+                    // A radius that is missing or `auto` is the other one.
+                    let (rx, ry) = (length("rx", width), length("ry", height));
+                    Vec2::new(rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0))
+                }
             };
             if radii.x > 0.0 && radii.y > 0.0 {
                 let ellipse = Ellipse::new(center, radii, 0.0);
@@ -278,7 +282,7 @@ pub(super) fn trace(
         }
         _ => {}
     }
-    Ok(None)
+    None
 }
 
 /// The data in CSS's `path("…")`; nothing for `none`.

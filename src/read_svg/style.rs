@@ -241,16 +241,23 @@ impl<'a> StyleSheet<'a> {
     /// The style of `node` inside an element of style `around`.
     pub(super) fn style(&self, node: Node<'_, '_>, around: &Style) -> (Style, OwnStyle) {
         let (mut style, mut own) = (around.clone(), OwnStyle::default());
-        for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
-            style.set(&mut own, attribute.name(), attribute.value(), around);
-        }
+        let attributes = || node.attributes().filter(|a| a.namespace().is_none());
         let matching = self.rules.rules.iter().filter(|rule| rule.selector.matches(&XmlNode(node)));
         let mut css: Vec<Declaration<'_>> =
             matching.flat_map(|rule| &rule.declarations).copied().collect();
         css.extend(node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from));
-        for important in [false, true] {
-            for declaration in css.iter().filter(|css| css.important == important) {
-                style.set_from_css(&mut own, declaration, around);
+        // The element's color first, since `currentColor` is that wherever it stands.
+        for is_color in [true, false] {
+            for attribute in attributes().filter(|a| (a.name() == "color") == is_color) {
+                style.set(&mut own, attribute.name(), attribute.value(), around);
+            }
+            for important in [false, true] {
+                let of_pass = |css: &&Declaration<'_>| {
+                    css.important == important && (css.name == "color") == is_color
+                };
+                for declaration in css.iter().filter(of_pass) {
+                    style.set_from_css(&mut own, declaration, around);
+                }
             }
         }
         style.displayed &= style.opacity > 0.0;

@@ -438,3 +438,60 @@ fn dashes_that_keep_their_size_keep_their_offset() {
         assert!((dash - expected * 25.4 / 96.0).abs() < 1e-9, "{found:?}");
     }
 }
+
+#[test]
+fn values_that_cannot_be_read_are_left_out_with_a_word() {
+    let svg = |body: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' \
+             viewBox='0 0 100 100' stroke='black'>\n{body}\n<path d='M5 5h10'/></svg>"
+        )
+    };
+    for (body, n_lines, value) in [
+        ("<line x1='foo' y1='1' x2='9' y2='1'/>", 2, "x1=\"foo\""),
+        ("<g transform='rotate(1,2'><path d='M5 8h10'/></g>", 2, "transform="),
+        ("<circle cx='calc(5px + 1px)' cy='50' r='3'/>", 2, "cx="),
+        ("<rect x='1' y='1' width='x' height='5'/>", 1, "width=\"x\""),
+        ("<svg viewBox='a b c d'><path d='M5 8h10'/></svg>", 2, "viewBox="),
+    ] {
+        let file = read_bytes(svg(body).as_bytes(), &SvgOptions::default()).unwrap();
+        let n: usize = file.plot.layers.iter().map(|layer| layer.lines.len()).sum();
+        assert_eq!(n, n_lines, "{body}");
+        let warning = file.warnings.iter().find(|warning| warning.contains(value));
+        assert!(warning.is_some_and(|text| text.starts_with("line 2: ")), "{:?}", file.warnings);
+    }
+    let page =
+        "<svg xmlns='http://www.w3.org/2000/svg' width='x' height='100' viewBox='0 0 50 50'/>";
+    let file = read_bytes(page.as_bytes(), &SvgOptions::default()).unwrap();
+    assert!((file.plot.width_mm - 50.0 * 25.4 / 96.0).abs() < 1e-9, "{}", file.plot.width_mm);
+}
+
+#[test]
+fn a_radius_that_is_missing_or_auto_is_the_other_one() {
+    for radii in ["rx='7'", "ry='7'", "rx='7' ry='auto'", "ry='7' rx='auto'"] {
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='96' height='96' stroke='black'>\
+             <ellipse cx='50' cy='50' {radii}/></svg>"
+        );
+        let file = read_bytes(svg.as_bytes(), &SvgOptions::default()).unwrap();
+        let length: f64 = file.plot.layers.iter().map(|layer| layer.lines.length_mm()).sum();
+        let expected = std::f64::consts::TAU * 7.0 * 25.4 / 96.0;
+        assert!((length - expected).abs() < 0.05 && file.warnings.is_empty(), "{radii}: {length}");
+    }
+}
+
+#[test]
+fn the_current_color_is_that_of_the_element_itself() {
+    for style in [
+        "style='color:red' stroke='currentColor'",
+        "stroke='currentColor' color='red'",
+        "style='stroke:currentColor;color:red'",
+    ] {
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='96' height='96' color='blue'>\
+             <path d='M5 5h10' {style}/></svg>"
+        );
+        let file = read_bytes(svg.as_bytes(), &SvgOptions::default()).unwrap();
+        assert_eq!(file.plot.layers[0].pen.color, "#ff0000", "{style}");
+    }
+}
