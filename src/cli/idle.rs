@@ -59,7 +59,8 @@ const RULES: &[Rule] = &[
     Rule {
         option: "unit",
         commands: DRAWINGS,
-        is_idle: |c| !c.is_given("drawing-scale"),
+        // Models of different units are brought to one.
+        is_idle: |c| !c.is_given("drawing-scale") && c.n_values("models") < 2,
         reason: "without --drawing-scale",
     },
     Rule { option: "near", commands: SCENES, is_idle: |c| c.is_parallel(), reason: PARALLEL },
@@ -72,6 +73,22 @@ const RULES: &[Rule] = &[
     },
     Rule { option: "distance", commands: SCENES, is_idle: |c| c.is_parallel(), reason: PARALLEL },
     Rule { option: "shortest-stroke", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "halo", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "thin", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "overlap", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule { option: "overlap-tolerance", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule {
+        option: "join-tolerance",
+        commands: &["draw", "surface"],
+        is_idle: is_exact,
+        reason: EXACT,
+    },
+    Rule {
+        option: "overlap-tolerance",
+        commands: &["draw"],
+        is_idle: |c| c.has("overlap", &["keep"]),
+        reason: "with --overlap keep",
+    },
     Rule { option: "simplify", commands: &["draw", "surface"], is_idle: is_exact, reason: EXACT },
     Rule { option: "optimize", commands: &["draw", "surface"], is_idle: is_exact, reason: EXACT },
     Rule { option: "smoothness", commands: &["surface"], is_idle: is_exact, reason: EXACT },
@@ -209,6 +226,11 @@ impl Choices<'_> {
         let values = self.0.try_get_raw(&id).ok().flatten().into_iter().flatten();
         let mut names_in = values.filter_map(|value| value.to_str()).flat_map(|v| v.split(','));
         names_in.any(|value| names.contains(&value))
+    }
+
+    /// How many values an argument has.
+    fn n_values(&self, id: &str) -> usize {
+        self.0.try_get_raw(id).ok().flatten().map_or(0, Iterator::count)
     }
 
     /// Whether models are drawn, no surface.

@@ -94,6 +94,8 @@ enum PngMark {
 pub(super) struct OutputOptions {
     /// `None` is standard output.
     pub(super) path: Option<PathBuf>,
+    /// Whether `-o -` asks for standard output.
+    pub(super) is_dash: bool,
     pub(super) format: Format,
     /// What plots are written as; `None` for formats that hold more than a plot.
     pub(super) target: Option<Target>,
@@ -118,6 +120,7 @@ impl OutputArgs {
     ///
     /// With `exact`, strokes are to be left as they are.
     pub(super) fn options(self, exact: bool) -> Result<OutputOptions, Refused> {
+        let is_dash_typed = self.output.as_deref().is_some_and(is_dash);
         let path = self.output.filter(|path| !is_dash(path));
         let format = output_format(self.format, path.as_deref())?;
         let Machine { target, motion } = self.plotting.machine(format)?;
@@ -148,6 +151,7 @@ impl OutputArgs {
             motion,
             format,
             path,
+            is_dash: is_dash_typed,
             threads: self.threads.map(usize::from),
             stats: self.stats,
             quiet: self.quiet,
@@ -167,6 +171,7 @@ impl OutputOptions {
     ) -> Self {
         Self {
             path,
+            is_dash: false,
             format: Format::Png,
             target: None,
             motion: Motion::default(),

@@ -144,8 +144,14 @@ pub(super) fn page_error(error: &PageError) -> String {
 
 /// Refuses to send a picture to a terminal.
 pub(super) fn check_terminal(output: &OutputOptions) -> Result<(), Box<dyn Error>> {
-    if output.path.is_none() && output.format.is_binary() && io::stdout().is_terminal() {
+    if output.path.is_some() || !io::stdout().is_terminal() {
+        return Ok(());
+    }
+    if output.format.is_binary() {
         return Err("this format cannot be written to the terminal; use -o FILE".into());
+    }
+    if !output.is_dash {
+        return Err("standard output is the terminal; use -o FILE, or -o - to see the text".into());
     }
     Ok(())
 }

@@ -286,6 +286,15 @@ fn options_without_effect_are_warned_of() {
         (&["--pen", "hidden=2"], "--pen for hidden lines has no effect"),
         (&["--hidden-levels", "2", "--hidden", "none"], "--hidden-levels has no effect"),
         (&["--dpi", "100"], "--dpi has no effect on svg"),
+        (&["--exact", "--halo", "1"], "--halo has no effect with --exact"),
+        (&["--exact", "--thin=2"], "--thin has no effect with --exact"),
+        (&["--exact", "--overlap", "keep"], "--overlap has no effect with --exact"),
+        (&["--exact", "--join-tolerance", "3"], "--join-tolerance has no effect with --exact"),
+        (
+            &["--overlap", "keep", "--overlap-tolerance", "1"],
+            "--overlap-tolerance has no effect with --overlap keep",
+        ),
+        (&["--unit", "m"], "--unit has no effect without --drawing-scale"),
     ] {
         let stderr = drawn(more);
         assert!(stderr.contains(&format!("warning: {message}")), "{more:?}: {stderr}");
