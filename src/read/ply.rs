@@ -167,6 +167,7 @@ impl PropertyAccess for Skipped {
 pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let bytes = &*with_line_feeds(bytes);
+    let bytes = &*without_names_of_numbers(bytes);
     let mut reader = Reader::new(bytes);
     let mut header = Parser::<Skipped>::new().read_header(&mut reader).map_err(located)?;
     check(&header)?;
@@ -204,6 +205,36 @@ fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
     } else {
         Cow::Borrowed(bytes)
     }
+}
+
+/// Text in which `nan`, `inf` and their like stand as a number too large for any: the parser does not know
+/// them, and a vertex that is not finite matters only if it is used.
+fn without_names_of_numbers(bytes: &[u8]) -> Cow<'_, [u8]> {
+    const END: &[u8] = b"end_header";
+    let is_name = |word: &[u8]| {
+        let word = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
+        [&b"nan"[..], b"inf", b"infinity"].iter().any(|name| word.eq_ignore_ascii_case(name))
+    };
+    let is_space = |c: &u8| c.is_ascii_whitespace();
+    let mut words = Words::new(bytes, None);
+    let is_text = [&b"ply"[..], b"format", b"ascii"].iter().all(|&w| words.next() == Some(w));
+    let data = bytes.windows(END.len()).position(|window| window == END);
+    let Some(data) = data.filter(|_| is_text).map(|at| at + END.len()) else {
+        return Cow::Borrowed(bytes);
+    };
+    if !bytes[data..].split(is_space).any(is_name) {
+        return Cow::Borrowed(bytes);
+    }
+    let mut text = bytes[..data].to_vec();
+    for word in bytes[data..].split_inclusive(is_space) {
+        let (word, space) = match word.split_last() {
+            Some((last, rest)) if is_space(last) => (rest, &word[rest.len()..]),
+            _ => (word, &[][..]),
+        };
+        text.extend_from_slice(if is_name(word) { b"1e999" } else { word });
+        text.extend_from_slice(space);
+    }
+    Cow::Owned(text)
 }
 
 /// Refuses headers that lack positions or faces.

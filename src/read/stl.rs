@@ -93,7 +93,12 @@ fn read_binary(bytes: &[u8]) -> Result<Parsed, Fault> {
     let (triangles, rest) = bytes[HEADER..].as_chunks::<TRIANGLE>();
     let present = triangles.len() as u64;
     let mut parsed = Parsed::default();
-    let is_exact = stated > 0 && stated <= present;
+    // More facets of its size to the very end are the model's; anything else was put behind it.
+    let (first, more) = triangles.split_at(stated.min(present) as usize);
+    let size_of_first = first.iter().map(size).fold(0.0, f32::max);
+    let is_like_them = |t: &[u8; TRIANGLE]| has_area(t) && size(t) <= MOST_GROWTH * size_of_first;
+    let goes_on = rest.is_empty() && !more.is_empty() && more.iter().all(is_like_them);
+    let is_exact = stated > 0 && stated <= present && !goes_on;
     let n_triangles = if is_exact { stated } else { present };
     if !is_exact && present > 0 {
         parsed.notices.push(Notice::WrongCount { stated, present, element: "triangle" });
@@ -126,6 +131,22 @@ fn read_binary(bytes: &[u8]) -> Result<Parsed, Fault> {
     };
     color_triangles(bytes, triangles, &mut parsed.soup);
     Ok(parsed)
+}
+
+/// How much farther from the origin than the facets that a header counts the others may be.
+const MOST_GROWTH: f32 = 1000.0;
+
+/// The largest coordinate of a triangle's record, infinite if any is not a number.
+fn size(triangle: &[u8; TRIANGLE]) -> f32 {
+    let (floats, _) = triangle[12..].as_chunks::<4>();
+    let sizes = floats.iter().map(|bytes| f32::from_le_bytes(*bytes).abs());
+    sizes.fold(0.0, |most, x| if x.is_nan() { f32::INFINITY } else { most.max(x) })
+}
+
+/// Whether the corners of a triangle's record differ.
+fn has_area(triangle: &[u8; TRIANGLE]) -> bool {
+    let [p, q, r] = [12, 24, 36].map(|at| &triangle[at..at + 12]);
+    p != q && q != r && r != p
 }
 
 /// Assigns each triangle to the part with its color, if any has one.

@@ -82,7 +82,8 @@ fn hostile_counts_are_refused_without_memory_for_them() {
     assert_eq!(good("x.stl", &stl).warnings[0].notice, present);
     refused("x.stl", &stl[..84]);
     stl[80..84].copy_from_slice(&11_u32.to_le_bytes());
-    assert_eq!(good("x.stl", &stl).warnings[0].notice, Notice::TrailingBytes { count: 50 });
+    let expected = Notice::WrongCount { stated: 11, present: 12, element: "triangle" };
+    assert_eq!(good("x.stl", &stl).warnings[0].notice, expected);
 }
 
 #[test]
@@ -123,4 +124,20 @@ fn errors_and_names_stay_on_one_line() {
     assert!(!error.to_string().contains('\x1B'));
     let error = read_file(&PathBuf::from("no/such/file.obj"), None).expect_err("no file");
     assert_message(&error, "no/such/file.obj: ", "cannot be read");
+}
+
+#[test]
+fn names_of_numbers_in_ply_matter_only_where_they_are_used() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty double y\n\
+                  property float z\nelement face 1\nproperty list uchar int vertex_index\n\
+                  end_header\n";
+    for name in ["nan", "NaN", "-nan", "inf", "-inf", "Infinity", "+INF"] {
+        for unused in [format!("{name} 0 0"), format!("0 {name} 0"), format!("0 0 {name}")] {
+            let vertices = format!("{header}0 0 0\n1 0 0\n1 1 0\n{unused}\n");
+            let model = good("x.ply", format!("{vertices}3 0 1 2\n"));
+            assert_eq!((model.mesh.n_faces(), model.repairs.unused_vertices), (1, 1), "{unused}");
+            let error = refused("x.ply", format!("{vertices}3 0 1 3\n"));
+            assert_message(&error, "x.ply:13: ", "not finite");
+        }
+    }
 }

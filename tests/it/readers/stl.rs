@@ -89,10 +89,17 @@ fn counts_that_disagree_with_the_size_are_told() {
         said("x.stl", with_count(0, 12)),
         ["x.stl: the header says 0 triangles, the file holds 12; all of these are read"]
     );
-    // Fewer than there are: the rest is something else.
+    // Fewer than there are: facets like the others are read, anything else is not.
     let model = good("x.stl", with_count(10, 12));
-    assert_eq!(model.mesh.n_faces(), 10);
-    assert_eq!(model.warnings[0].notice, Notice::TrailingBytes { count: 100 });
+    assert_eq!(model.mesh.n_faces(), 12);
+    for junk in [[0x20; 100], [0; 100], [0x41; 100], std::array::from_fn(|k| (37 * k % 256) as u8)]
+    {
+        let model = good("x.stl", [with_count(12, 12), junk.to_vec()].concat());
+        assert_eq!(model.mesh.n_faces(), 12);
+        assert_eq!(model.warnings[0].notice, Notice::TrailingBytes { count: 100 });
+    }
+    let odd = [with_count(10, 12), vec![7]].concat();
+    assert_eq!(good("x.stl", odd).mesh.n_faces(), 10);
     refused("x.stl", with_count(0, 0));
     let mut cut = with_count(12, 12);
     cut.truncate(84 + 50 * 7 + 20);
