@@ -30,18 +30,23 @@ pub fn read_materials(bytes: &[u8]) -> MaterialFile {
     loop {
         let line = words.line();
         let problem = match words.next_on_line() {
-            Some(b"newmtl") => {
+            Some(word) if word.eq_ignore_ascii_case(b"newmtl") => {
                 material = Some(words_of_name(&mut words));
                 None
             }
-            Some(b"Kd") => match (diffuse(&mut words), &material) {
-                (Ok(color), Some(material)) => {
-                    file.colors.insert(material.clone(), color);
-                    None
+            Some(word) if word.eq_ignore_ascii_case(b"Kd") => {
+                match (diffuse(&mut words), &material) {
+                    (Ok((color, is_in_range)), Some(material)) => {
+                        file.colors.insert(material.clone(), color);
+                        (!is_in_range).then(|| {
+                            "numbers of Kd go from 0 to 1; those beyond are taken as 0 or 1"
+                                .to_owned()
+                        })
+                    }
+                    (Ok(_), None) => Some("`Kd` before the first `newmtl` is ignored".to_owned()),
+                    (Err(problem), _) => Some(problem),
                 }
-                (Ok(_), None) => Some("`Kd` before the first `newmtl` is ignored".to_owned()),
-                (Err(problem), _) => Some(problem),
-            },
+            }
             _ => None,
         };
         if let Some(problem) = problem {
@@ -62,8 +67,8 @@ pub fn read_materials(bytes: &[u8]) -> MaterialFile {
     file
 }
 
-/// The numbers after `Kd`; a single one is a gray.
-fn diffuse(words: &mut Words<'_>) -> Result<[u8; 3], String> {
+/// The color of the numbers after `Kd`, and whether all are in range; a single one is a gray.
+fn diffuse(words: &mut Words<'_>) -> Result<([u8; 3], bool), String> {
     let mut parts = Vec::with_capacity(3);
     while let Some(word) = words.next_on_line().filter(|word| word.first() != Some(&b'#')) {
         if matches!(word, b"xyz" | b"spectral") {
@@ -79,9 +84,10 @@ fn diffuse(words: &mut Words<'_>) -> Result<[u8; 3], String> {
             Err(_) => return Err(format!("`{}` in Kd is not a number", shown(word))),
         }
     }
+    let is_in_range = parts.iter().all(|part| (0.0..=1.0).contains(part));
     match parts[..] {
-        [gray] => Ok(super::parts::color_of_parts([gray; 3])),
-        [red, green, blue] => Ok(super::parts::color_of_parts([red, green, blue])),
+        [gray] => Ok((super::parts::color_of_parts([gray; 3]), is_in_range)),
+        [red, green, blue] => Ok((super::parts::color_of_parts([red, green, blue]), is_in_range)),
         _ => Err(format!("three numbers expected for Kd, {} found", parts.len())),
     }
 }
@@ -116,7 +122,8 @@ mod tests {
             ("red one".to_owned(), [255, 0, 128]),
         ];
         assert_eq!(colors(text), expected);
-        assert!(read_materials(text.as_bytes()).warnings.is_empty());
+        let beyond = "numbers of Kd go from 0 to 1; those beyond are taken as 0 or 1";
+        assert_eq!(read_materials(text.as_bytes()).warnings, [(14, beyond.to_owned())]);
     }
 
     #[test]
@@ -124,6 +131,7 @@ mod tests {
         for (line, problem) in [
             ("Kd 0.5 1", "three numbers expected for Kd, 2 found"),
             ("Kd", "three numbers expected for Kd, 0 found"),
+            ("kd 0.5 1", "three numbers expected for Kd, 2 found"),
             ("Kd a b c", "`a` in Kd is not a number"),
             ("Kd 1 nan 0", "`nan` in Kd is not a number"),
             ("Kd spectral x.rfl", "`Kd spectral` is not supported; write Kd as red, green, blue"),

@@ -91,7 +91,8 @@ pub enum PointsError {
 
 impl ScatteredPoints {
     /// Reads points, one a line: x, y and z with comma, semicolon, tab or blanks between them. More
-    /// cells on a line are ignored, as are comments and titles. O(bytes).
+    /// cells on a line are ignored, as are comments and titles. Where titles name columns x, y and z,
+    /// these are read, in whatever order they are. O(bytes).
     ///
     /// A point whose z is missing, `nan` or `nodata` is left out.
     ///
@@ -100,16 +101,24 @@ impl ScatteredPoints {
     pub fn read(text: &str, nodata: Option<f64>) -> Result<Self, PointsError> {
         let mut read = Self::default();
         let (mut numbers, mut known) = (Numbers::default(), None);
+        let mut columns = [0, 1, 2];
         for (line, text) in lines(text) {
             let separator = known.unwrap_or_else(|| Separator::of(text));
             // Numbers in titles do not decide between decimal points and commas.
             let mut trial = numbers;
-            let mut cells = separator.cells(text).map(|cell| trial.read(cell));
-            let mut next = || {
-                let cell = cells.next().unwrap_or(Ok(Cell::Word));
-                cell.map_err(|_| PointsError::MixedDecimals { line })
-            };
-            match (next()?, next()?, next()?) {
+            let mut row = [Cell::Word; 3];
+            let mut n_left = 3;
+            for (k, cell) in separator.cells(text).enumerate() {
+                if n_left == 0 {
+                    break;
+                }
+                if let Some(axis) = columns.iter().position(|column| *column == k) {
+                    let cell = trial.read(cell);
+                    row[axis] = cell.map_err(|_| PointsError::MixedDecimals { line })?;
+                    n_left -= 1;
+                }
+            }
+            match (row[0], row[1], row[2]) {
                 (Cell::Number(x), Cell::Number(y), z) if x.is_finite() && y.is_finite() => {
                     match z {
                         Cell::Number(z) if z.is_finite() && nodata != Some(z) => {
@@ -122,6 +131,8 @@ impl ScatteredPoints {
                 }
                 (Cell::Word, ..) if read.points.is_empty() && read.n_without_height == 0 => {
                     read.n_titles += 1;
+                    let titles: Vec<&str> = separator.cells(text).collect();
+                    columns = named_columns(&titles).unwrap_or(columns);
                     continue;
                 }
                 _ => return Err(PointsError::NotAPoint { line }),
@@ -170,6 +181,17 @@ impl ScatteredPoints {
 }
 
 /// The indices of the points, those at one place beside each other in their order.
+/// The places of the cells called x, y and z among titles, if each is there once.
+fn named_columns(titles: &[&str]) -> Option<[usize; 3]> {
+    let place = |name: &str| {
+        let is_it = |title: &&str| title.trim_matches(['"', '\'']).eq_ignore_ascii_case(name);
+        let mut places = titles.iter().enumerate().filter(|(_, title)| is_it(title));
+        let (place, _) = places.next()?;
+        places.next().is_none().then_some(place)
+    };
+    Some([place("x")?, place("y")?, place("z")?])
+}
+
 fn by_place(points: &[DVec3]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // −0 and 0 are one place.

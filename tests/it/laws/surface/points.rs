@@ -62,3 +62,20 @@ fn points_at_one_place_are_merged_as_asked() {
     assert_eq!(huge.merge(Duplicates::Mean), Ok(1));
     assert_eq!(huge.points[0].z, 1.25e308);
 }
+
+#[test]
+fn columns_are_found_by_their_names() {
+    let expected = [dvec3(0.0, 0.0, 1.0), dvec3(1.0, 0.5, 0.25)];
+    for text in [
+        "id,x,y,z\n7,0,0,1\n8,1,0.5,0.25\n",
+        "z,x,y\n1,0,0\n0.25,1,0.5\n",
+        "\"Y\";\"Z\";\"X\"\n0;1;0\n0,5;0,25;1\n",
+        "name x y z color\np1 0 0 1 red\np2 1 0.5 0.25 blue\n",
+        // No names, or not all: the first three.
+        "a,b,c,d\n0,0,1,9\n1,0.5,0.25,9\n",
+        "x,y,height\n0,0,1\n1,0.5,0.25\n",
+        "x,y,z,z\n0,0,1,9\n1,0.5,0.25,9\n",
+    ] {
+        assert_eq!(read(text).points, expected, "{text}");
+    }
+}
