@@ -75,8 +75,8 @@ pub(super) struct LineArgs {
     ///   plain      one pen for all visible lines
     ///   technical  outline twice as wide; the same as adding outline to --lines
     ///   bold       outline four times as wide, silhouettes twice as wide; with a 0.3 mm pen,
-    ///              the same as adding outline to --lines and giving
-    ///              --pen outline=2:1.2mm --pen silhouette=3:0.6mm
+    ///              the same as adding outline to --lines, with the rules
+    ///              `--pen outline=2:1.2mm --pen silhouette=3:0.6mm`
     #[arg(long, value_enum, default_value = "plain", verbatim_doc_comment)]
     pub(super) style: Style,
     /// Hidden-line algorithm; all give the same drawing

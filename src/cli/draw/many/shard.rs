@@ -141,6 +141,6 @@ mod tests {
         let unset = array(["", "1", "8", "8", "1"]).expect_err("no task");
         assert!(unset.contains("SLURM_ARRAY_TASK_ID is not set"), "{unset}");
         let odd = array(["x", "1", "8", "8", "1"]).expect_err("no task");
-        assert!(odd.contains("no number"), "{odd}");
+        assert!(odd.contains("is not a number"), "{odd}");
     }
 }
