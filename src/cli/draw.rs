@@ -277,17 +277,22 @@ fn why_empty(job: &Job, scene: &Scene, sheet: &PlacedPage, n_lines: usize) -> St
         let length = |points: &[DVec2]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
         let longest = with_all.iter().map(|stroke| length(stroke.points)).fold(0.0, f64::max);
         return format!(
-            "every stroke is shorter than --shortest-stroke {} mm, the longest {:.2e} mm; use a \
+            "every stroke is shorter than --shortest-stroke {} mm, the longest {} mm; use a \
              larger --drawing-scale, the model's unit, as in --unit m, or a smaller \
              --shortest-stroke",
             job.draw.shortest_stroke_mm,
-            longest * mm_per_unit
+            brief(longest * mm_per_unit)
         );
     }
     if n_lines == 0 && sheet.extent.corners().is_some() {
         return "the model has no lines of the kinds selected; use other --lines".to_owned();
     }
     "nothing is in view".to_owned()
+}
+
+/// A number with at most three significant digits.
+fn brief(number: f64) -> f64 {
+    format!("{number:.2e}").parse().unwrap_or(number)
 }
 
 fn plot_options(job: &Job) -> PlotOptions {

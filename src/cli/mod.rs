@@ -75,7 +75,6 @@ enum Color {
 enum Command {
     /// Draw models as lines, with hidden lines removed
     Draw(Box<DrawArgs>),
-    /// Draw a surface z = f(x, y) as grid lines or level curves, with hidden lines removed
     Surface(Box<SurfaceArgs>),
     /// Fill the visible faces of models with color, for print
     Fill(Box<FillArgs>),

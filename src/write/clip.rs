@@ -20,6 +20,11 @@ pub(super) fn clip(line: &[DVec2], low: DVec2, high: DVec2) -> Vec<Vec<DVec2>> {
         }
         open = to == pair[1];
     }
+    // A line that only touches the border is not drawn there; a dot is.
+    let is_dot = |line: &[DVec2]| line.iter().all(|p| *p == line[0]);
+    if !is_dot(line) {
+        pieces.retain(|piece| !is_dot(piece));
+    }
     pieces
 }
 

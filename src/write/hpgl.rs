@@ -118,7 +118,11 @@ pub enum PlotterError {
         known: String,
     },
     /// No paper as large as the page.
-    #[error("{machine} does not take paper of {width_mm} × {height_mm} mm; choose from {known}")]
+    #[error(
+        "{machine} does not take paper of {} × {} mm; choose from {known}",
+        (1e3 * width_mm).round() / 1e3,
+        (1e3 * height_mm).round() / 1e3
+    )]
     NoPaperOfSize {
         /// The plotter.
         machine: String,
@@ -399,7 +403,10 @@ pub fn write(plot: &Plot, profile: &LoadedPlotter, out: &mut dyn io::Write) -> i
         for line in layer.lines.iter() {
             let units: Vec<DVec2> = line.iter().map(|&p| to_units(p, plot, profile)).collect();
             for piece in clip(&units, low, high) {
-                write_stroke(&piece, out)?;
+                // What is left of a line that was cut may be less than a unit.
+                if piece == units || rounded(&piece).len() > 1 {
+                    write_stroke(&piece, out)?;
+                }
             }
         }
     }
@@ -419,10 +426,16 @@ fn to_units(p: DVec2, plot: &Plot, profile: &LoadedPlotter) -> DVec2 {
     dvec2(p.x - paper.origin[0], paper.origin[1] - p.y) / machine.unit
 }
 
-fn write_stroke(piece: &[DVec2], out: &mut dyn io::Write) -> io::Result<()> {
+/// Points in whole units, each once in a row.
+fn rounded(piece: &[DVec2]) -> Vec<[i64; 2]> {
     let mut points: Vec<[i64; 2]> =
         piece.iter().map(|p| [p.x.round() as i64, p.y.round() as i64]).collect();
     points.dedup();
+    points
+}
+
+fn write_stroke(piece: &[DVec2], out: &mut dyn io::Write) -> io::Result<()> {
+    let points = rounded(piece);
     let Some((&[x, y], rest)) = points.split_first() else { return Ok(()) };
     write!(out, "\nPA;PU{x},{y};")?;
     if rest.is_empty() {

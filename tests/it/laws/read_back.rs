@@ -631,3 +631,27 @@ fn layers_of_one_number_are_drawn_by_one_pen() {
         .collect();
     assert_eq!(ids, ["pen2-a", "pen2-b", "pen2-a-2", "pen3-c", "pen3-d", "pen9-e", "pen1-000000"]);
 }
+
+#[test]
+fn lines_that_only_touch_the_limits_leave_no_dots() {
+    let mut plot = Plot { width_mm: 297.0, height_mm: 210.0, ..plot() };
+    plot.layers.truncate(1);
+    let profile = hpgl::LoadedPlotter::new(&plot, "hp7475a", Some("a4")).unwrap();
+    let [low, high] = profile.reach(&plot);
+    let dots = |lines: &[[DVec2; 2]]| {
+        let mut plot = plot.clone();
+        plot.layers[0].lines = Polylines::default();
+        lines.iter().for_each(|line| plot.layers[0].lines.push(*line));
+        let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
+        text.matches("PD;").count()
+    };
+    let out = DVec2::new(5.0, -5.0);
+    let corner = dvec2(low.x, low.y);
+    for by in [0.0, 0.003, 0.006, 0.01] {
+        assert_eq!(dots(&[[corner + by - out, corner + by + out]]), 0, "{by}");
+        assert_eq!(dots(&[[dvec2(low.x - by, high.y), dvec2(low.x - 9.0, high.y)]]), 0, "{by}");
+    }
+    // What was a dot is one, and so is a stroke shorter than a unit.
+    let middle = low.midpoint(high);
+    assert_eq!(dots(&[[middle, middle], [middle + 1.0, middle + dvec2(1.001, 1.0)]]), 2);
+}
