@@ -11,7 +11,7 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
@@ -37,6 +37,9 @@ const FOR_PENS: [&str; 3] = ["format", "machine", "gcode-profile"];
 
 /// The arguments with all settings, without the program's name.
 static ARGUMENTS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// About environment variables that are no settings, for the command to say.
+static UNKNOWN: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
 thread_local! {
     /// What this thread draws as if it had been typed: the viewer draws many command lines.
@@ -422,6 +425,11 @@ fn set(
     }
 }
 
+/// Warnings about environment variables that begin like settings and are none.
+pub(super) fn unknown_variables() -> Vec<String> {
+    UNKNOWN.lock().map(|unknown| unknown.clone()).unwrap_or_default()
+}
+
 /// Settings from environment variables, with a warning about each that is not the name of an option.
 ///
 /// Several pens are separated by blanks, as are the values of options that take several.
@@ -439,7 +447,12 @@ fn environment(known: &BTreeMap<&str, &Arg>) -> Result<Layer, ConfigError> {
         let name = variable.replace('_', "-").to_ascii_lowercase();
         let Some(arg) = known.get(name.as_str()) else {
             let hint = did_you_mean(&name, known);
-            messages::warning(&format!("{PREFIX}{variable} is not a setting{hint}"));
+            let warning = format!("{PREFIX}{variable} is not a setting{hint}");
+            if let Ok(mut unknown) = UNKNOWN.lock()
+                && !unknown.contains(&warning)
+            {
+                unknown.push(warning);
+            }
             continue;
         };
         let values = if name == "pen" || takes_several(arg) {
@@ -486,5 +499,6 @@ pub(super) fn show(preset: Option<&str>) -> Result<(), Box<dyn Error>> {
         }
         seen.extend(names);
     }
+    unknown_variables().iter().for_each(|warning| messages::warning(warning));
     file::write_to_stdout(|out| out.write_all(text.as_bytes())).map_err(Into::into)
 }

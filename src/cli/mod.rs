@@ -157,6 +157,10 @@ pub(crate) fn run() -> ExitCode {
         Color::Always => anstream::ColorChoice::Always.write_global(),
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
+    #[cfg(feature = "view")]
+    if let Command::View(_) = typed.command {
+        config::unknown_variables().iter().for_each(|warning| messages::warning(warning));
+    }
     let result = match typed.command {
         Command::Draw(args) => started("draw", args.job(idle), |job| draw::run(&job)),
         Command::Surface(args) => started("surface", args.job(idle), |job| surface::run(&job)),

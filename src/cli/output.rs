@@ -142,9 +142,12 @@ impl OutputArgs {
             Format::Hpgl | Format::Gcode => target,
             Format::Json => None,
         };
+        let mut warnings = without_effect(format);
+        warnings.extend(self.plotting.shortened_overlap());
+        warnings.extend(config::unknown_variables());
         Ok(OutputOptions {
             inputs: self.plotting.inputs(),
-            warnings: without_effect(format),
+            warnings,
             plotting: self.plotting.options(exact, format)?,
             keeps_dashes_whole: format == Format::Dxf && self.dxf_dashes == DxfDashes::Native,
             target,

@@ -101,6 +101,17 @@ impl PlotArgs {
 
     /// Checks what clap cannot; the error is a message about usage.
     ///
+    /// What to say of an overlap that is too long for the distance.
+    pub(super) fn shortened_overlap(&self) -> Option<String> {
+        let (distance, overlap) = (self.split_distance?, self.split_overlap?);
+        (2.0 * overlap > distance).then(|| {
+            format!(
+                "--split-overlap {overlap} is more than half of --split-distance: {} mm are used",
+                distance / 2.0
+            )
+        })
+    }
+
     /// With `exact`, strokes are to be left as they are.
     pub(super) fn options(self, exact: bool, format: Format) -> Result<Plotting, String> {
         for (i, pen) in self.pens.iter().enumerate() {

@@ -17,6 +17,7 @@ use hiddenline::stages::write::Format;
 use self::picture::PictureArgs;
 use super::Refused;
 use super::camera::{CameraArgs, ViewSource};
+use super::config;
 use super::input::{Input, InputArgs};
 use super::output::{OutputOptions, check_place};
 use super::paper::{Run, Written};
@@ -109,7 +110,7 @@ impl PreviewArgs {
             edges: picture.edges.then_some(picture.lines),
             engine: picture.engine_name(),
             output: OutputOptions {
-                warnings: idle,
+                warnings: [idle, config::unknown_variables()].concat(),
                 ..OutputOptions::picture(path, threads.map(usize::from), stats, quiet)
             },
         })

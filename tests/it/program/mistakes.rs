@@ -295,6 +295,10 @@ fn options_without_effect_are_warned_of() {
             "--overlap-tolerance has no effect with --overlap keep",
         ),
         (&["--unit", "m"], "--unit has no effect without --drawing-scale"),
+        (
+            &["--split-distance", "1mm", "--split-overlap", "5"],
+            "--split-overlap 5 is more than half of --split-distance: 0.5 mm are used",
+        ),
     ] {
         let stderr = drawn(more);
         assert!(stderr.contains(&format!("warning: {message}")), "{more:?}: {stderr}");

@@ -95,9 +95,20 @@ fn unknown_settings_are_refused_with_their_line_and_unknown_variables_with_a_war
     assert!(output.status.success());
     let stderr = text(&output.stderr);
     assert!(
-        stderr.contains("HIDDENLINE_MARGINS is not a setting; did you mean margin"),
+        stderr.contains("warning: HIDDENLINE_MARGINS is not a setting; did you mean margin"),
         "{stderr}"
     );
+    let run = |arguments: &[&str]| {
+        let output = command(folder, arguments).env("HIDDENLINE_MARGINS", "20").output().unwrap();
+        (output.status.code(), text(&output.stderr))
+    };
+    let (code, stderr) = run(&["draw", "cube.obj", "-o", "b.svg", "--strict"]);
+    assert!(code == Some(1) && !folder.join("b.svg").exists(), "{stderr}");
+    assert_eq!(run(&["draw", "cube.obj", "-o", "b.svg", "-q"]), (Some(0), String::new()));
+    for arguments in [&["config", "show"][..], &["preview", "cube.obj", "-o", "b.png"]] {
+        let (code, stderr) = run(arguments);
+        assert!(code == Some(0) && stderr.contains("HIDDENLINE_MARGINS is not"), "{stderr}");
+    }
 }
 
 #[test]
