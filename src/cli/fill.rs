@@ -335,6 +335,9 @@ impl Picture<'_> {
             });
             edges.append(&hatched.map_err(|error| hatching::with_remedy(&error))?);
         }
+        if !edges.is_empty() {
+            run.notes.warnings.extend(job.output.plotting.idle_pens(&edges, true));
+        }
         if let Some((around, _)) = around {
             edges.append(&around.with_wires(scene, camera));
         }

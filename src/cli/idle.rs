@@ -19,6 +19,7 @@ struct Rule {
 
 const DRAWINGS: &[&str] = &["draw", "surface", "fill"];
 const SCENES: &[&str] = &["draw", "surface", "fill", "preview"];
+const MODELS: &[&str] = &["draw", "fill", "preview"];
 const PLOTS: &[&str] = &["surface", "fill"];
 const MESHES: &[&str] = &["surface", "fill", "preview"];
 /// Options for strokes, which filled areas alone do not have.
@@ -57,6 +58,18 @@ const RULES: &[Rule] = &[
         reason: "without crease among --lines",
     },
     Rule {
+        option: "dxf-dashes",
+        commands: &["draw"],
+        is_idle: |c| !c.has("hidden", &["dashed"]),
+        reason: "without --hidden dashed",
+    },
+    Rule {
+        option: "dxf-dashes",
+        commands: &["surface", "fill", "optimize"],
+        is_idle: |c| c.is_given("dxf-dashes"),
+        reason: "without hidden lines; dashes of other lines are always separate",
+    },
+    Rule {
         option: "unit",
         commands: DRAWINGS,
         // Models of different units are brought to one.
@@ -73,6 +86,19 @@ const RULES: &[Rule] = &[
     },
     Rule { option: "distance", commands: SCENES, is_idle: |c| c.is_parallel(), reason: PARALLEL },
     Rule { option: "shortest-stroke", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule {
+        option: "smooth",
+        commands: &["draw"],
+        is_idle: |c| is_exact(c) && !c.has("smooth", OFF),
+        reason: EXACT,
+    },
+    Rule { option: "smooth-tolerance", commands: &["draw"], is_idle: is_exact, reason: EXACT },
+    Rule {
+        option: "smooth-tolerance",
+        commands: MODELS,
+        is_idle: |c| c.has("smooth", OFF),
+        reason: "without --smooth",
+    },
     Rule { option: "halo", commands: &["draw"], is_idle: is_exact, reason: EXACT },
     Rule { option: "thin", commands: &["draw"], is_idle: is_exact, reason: EXACT },
     Rule { option: "overlap", commands: &["draw"], is_idle: is_exact, reason: EXACT },
@@ -196,6 +222,7 @@ const RULES: &[Rule] = &[
     },
 ];
 
+const OFF: &[&str] = &["off"];
 const PARALLEL: &str = "on an orthographic projection";
 const EXACT: &str = "with --exact, which leaves lines as they are";
 const NO_PATCH: &str = "without --parametric";

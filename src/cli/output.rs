@@ -144,6 +144,7 @@ impl OutputArgs {
         };
         let mut warnings = without_effect(format);
         warnings.extend(self.plotting.shortened_overlap());
+        warnings.extend(self.plotting.idle_controls(format));
         warnings.extend(config::unknown_variables());
         Ok(OutputOptions {
             inputs: self.plotting.inputs(),

@@ -99,8 +99,6 @@ impl PlotArgs {
         self.gcode_profile.iter().cloned().collect()
     }
 
-    /// Checks what clap cannot; the error is a message about usage.
-    ///
     /// What to say of an overlap that is too long for the distance.
     pub(super) fn shortened_overlap(&self) -> Option<String> {
         let (distance, overlap) = (self.split_distance?, self.split_overlap?);
@@ -112,7 +110,28 @@ impl PlotArgs {
         })
     }
 
-    /// With `exact`, strokes are to be left as they are.
+    /// What to say of controls of `--pen` that `format` has no place for.
+    pub(super) fn idle_controls(&self, format: Format) -> Vec<String> {
+        if !config::is_typed("--pen") {
+            return Vec::new();
+        }
+        let is_hpgl = format == Format::Hpgl;
+        let has =
+            |is_set: fn(&LayerControls) -> bool| self.pens.iter().any(|p| is_set(&p.controls));
+        let controls = [
+            ("speed", is_hpgl, has(|controls| controls.speed.is_some())),
+            ("height", false, has(|controls| controls.height.is_some())),
+            ("delay", false, has(|controls| controls.delay_ms.is_some())),
+            ("pause", is_hpgl || format == Format::Gcode, has(|controls| controls.pause)),
+        ];
+        let idle = controls.iter().filter(|(_, is_kept, is_set)| *is_set && !is_kept);
+        let idle = idle.filter(|_| format != Format::Svg);
+        idle.map(|(name, ..)| format!("{name} of --pen has no effect on {}", format.name()))
+            .collect()
+    }
+
+    /// Checks what clap cannot; the error is a message about usage. With `exact`, strokes are to be left
+    /// as they are.
     pub(super) fn options(self, exact: bool, format: Format) -> Result<Plotting, String> {
         for (i, pen) in self.pens.iter().enumerate() {
             let earlier = self.pens.iter().take(i).find(|other| other.number == pen.number);

@@ -3,11 +3,14 @@
 //! Names in `mtllib` often come from other systems, with backslashes, letters in the wrong case, or
 //! folders that do not exist here. The file is found all the same if it is next to the model.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::mtl::read_materials;
+use super::mtl::{read_materials, words_of_name};
 use super::text;
+
+/// Materials that are used and not defined of which each has its own warning.
+const MOST_UNDEFINED: usize = 3;
 
 /// Colors by the names of materials, and what could not be read.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,7 +24,8 @@ pub struct MaterialColors {
 /// The MTL files that an OBJ file names, whether they exist or not; none for other files and
 /// standard input. Reads the whole file.
 pub fn material_files(path: &Path) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = libraries(path)
+    let mut files: Vec<PathBuf> = named_materials(path)
+        .libraries
         .into_iter()
         .flat_map(|library| {
             let found = library.files(path);
@@ -39,10 +43,13 @@ pub fn material_files(path: &Path) -> Vec<PathBuf> {
 /// A missing file or a faulty line is a warning, not an error: the model can be drawn without it.
 pub fn material_colors(path: &Path) -> MaterialColors {
     let mut found = MaterialColors::default();
-    let mut seen = Vec::new();
-    for library in libraries(path) {
+    let (mut seen, mut defined) = (Vec::new(), BTreeSet::new());
+    let NamedMaterials { libraries, uses } = named_materials(path);
+    let mut is_any_missing = false;
+    for library in libraries {
         let files = library.files(path);
         if files.is_empty() {
+            is_any_missing = true;
             found.warnings.push(format!(
                 "{}:{}: the material file `{}` was not found; its materials have no color",
                 path.display(),
@@ -58,6 +65,7 @@ pub fn material_colors(path: &Path) -> MaterialColors {
                 Ok(bytes) => {
                     let materials = read_materials(&bytes);
                     found.colors.extend(materials.colors);
+                    defined.extend(materials.names);
                     let warnings = materials.warnings.into_iter();
                     found.warnings.extend(
                         warnings.map(|(line, what)| format!("{}:{line}: {what}", file.display())),
@@ -71,6 +79,21 @@ pub fn material_colors(path: &Path) -> MaterialColors {
             seen.push(file);
         }
     }
+    if !seen.is_empty() && !is_any_missing {
+        let undefined: Vec<_> = uses.iter().filter(|(name, _)| !defined.contains(*name)).collect();
+        found.warnings.extend(undefined.iter().take(MOST_UNDEFINED).map(|(name, line)| {
+            format!(
+                "{}:{line}: the material `{}` is not in the material file; its faces have no color",
+                path.display(),
+                text::shown(name.as_bytes())
+            )
+        }));
+        if let (Some(last), Some(more)) =
+            (found.warnings.last_mut(), undefined.len().checked_sub(MOST_UNDEFINED + 1))
+        {
+            *last = format!("{last} ({} more like this)", more + 1);
+        }
+    }
     found
 }
 
@@ -80,26 +103,44 @@ struct Library {
     names: String,
 }
 
-/// The `mtllib` records of an OBJ file, each text once.
-fn libraries(path: &Path) -> Vec<Library> {
+/// What an OBJ file says of materials.
+#[derive(Default)]
+struct NamedMaterials {
+    /// The `mtllib` records, each text once.
+    libraries: Vec<Library>,
+    /// The materials that `usemtl` names, with the line of the first use.
+    uses: BTreeMap<String, usize>,
+}
+
+/// The material files and materials that an OBJ file names; other files name none.
+fn named_materials(path: &Path) -> NamedMaterials {
+    let mut named = NamedMaterials::default();
     let is_obj = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if !is_obj {
-        return Vec::new();
+        return named;
     }
-    let Ok(bytes) = std::fs::read(path) else { return Vec::new() };
+    let Ok(bytes) = std::fs::read(path) else { return named };
     let decoded = text::decode(&bytes);
     let mut words = text::Words::new(&decoded, None);
-    let mut libraries: Vec<Library> = Vec::new();
     loop {
         let line = words.line();
-        if words.next_on_line() == Some(b"mtllib") {
-            let names = text::name(words.rest_of_line());
-            if !names.is_empty() && libraries.iter().all(|other| other.names != names) {
-                libraries.push(Library { line, names });
+        match words.next_on_line() {
+            Some(b"mtllib") => {
+                let names = text::name(words.rest_of_line());
+                if !names.is_empty() && named.libraries.iter().all(|other| other.names != names) {
+                    named.libraries.push(Library { line, names });
+                }
             }
+            Some(b"usemtl") => {
+                let name = words_of_name(&mut words);
+                if !name.is_empty() {
+                    named.uses.entry(name).or_insert(line);
+                }
+            }
+            _ => {}
         }
         if !words.skip_line() {
-            return libraries;
+            return named;
         }
     }
 }

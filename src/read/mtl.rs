@@ -4,7 +4,7 @@
 //! it panic (`Kd 0.5`). A drawing needs only two records, `newmtl` and `Kd`, so they are read here,
 //! line by line: nothing else in a file can do harm, and a bad line costs only its own color.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::text::{Words, name, number, shown};
 
@@ -16,6 +16,8 @@ const MOST_WARNINGS: usize = 5;
 pub struct MaterialFile {
     /// Red, green and blue of `Kd`, taken for sRGB as they are, for the materials that have one.
     pub colors: BTreeMap<String, [u8; 3]>,
+    /// The names of all materials.
+    pub names: BTreeSet<String>,
     /// Lines that could not be read, counted from 1, and what is wrong with each.
     pub warnings: Vec<(usize, String)>,
 }
@@ -31,7 +33,9 @@ pub fn read_materials(bytes: &[u8]) -> MaterialFile {
         let line = words.line();
         let problem = match words.next_on_line() {
             Some(word) if word.eq_ignore_ascii_case(b"newmtl") => {
-                material = Some(words_of_name(&mut words));
+                let name = words_of_name(&mut words);
+                file.names.insert(name.clone());
+                material = Some(name);
                 None
             }
             Some(word) if word.eq_ignore_ascii_case(b"Kd") => {
@@ -93,7 +97,7 @@ fn diffuse(words: &mut Words<'_>) -> Result<([u8; 3], bool), String> {
 }
 
 /// The words left on this line, one blank between them, as OBJ files refer to them.
-fn words_of_name(words: &mut Words<'_>) -> String {
+pub(super) fn words_of_name(words: &mut Words<'_>) -> String {
     let mut joined = Vec::new();
     while let Some(word) = words.next_on_line().filter(|word| word.first() != Some(&b'#')) {
         if !joined.is_empty() {

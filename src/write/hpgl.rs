@@ -384,6 +384,7 @@ pub fn write(plot: &Plot, profile: &LoadedPlotter, out: &mut dyn io::Write) -> i
     }
     let low = dvec2(f64::from(paper.x[0]), f64::from(paper.y[0])) - AT_LIMIT;
     let high = dvec2(f64::from(paper.x[1]), f64::from(paper.y[1])) + AT_LIMIT;
+    let mut has_own_speed = false;
     for layer in plot.plotted_layers() {
         if layer.lines.is_empty() {
             continue;
@@ -396,7 +397,11 @@ pub fn write(plot: &Plot, profile: &LoadedPlotter, out: &mut dyn io::Write) -> i
         write!(out, "\nSP{};", layer.number)?;
         if let Some(speed) = machine.layer_speed(layer) {
             write!(out, "VS{speed};")?;
+        } else if has_own_speed {
+            // Without a number, the speed that the machine starts with.
+            write!(out, "VS;")?;
         }
+        has_own_speed = layer.speed_percent().is_some() && machine.speeds.is_some();
         if let Some(force) = machine.force {
             write!(out, "FS{force};")?;
         }

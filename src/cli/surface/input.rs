@@ -54,6 +54,8 @@ pub(in crate::cli) struct SurfaceInput {
     pub(super) outside: Outside,
     /// The parameters of each sheet of a formula, whose values its name may show.
     pub(super) parameters: Vec<Vec<Parameter>>,
+    /// Warnings about parameters that no formula names.
+    pub(super) unused: Vec<String>,
     /// The names of sheets, where they are not the usual ones.
     pub(super) names: Vec<String>,
 }
@@ -108,6 +110,7 @@ impl SurfaceInput {
     /// Reads the surface. Warnings are added to `warnings`.
     pub(super) fn read(&self, warnings: &mut Vec<String>) -> Result<Surface, Box<dyn Error>> {
         let failed = |path: &Path, error: &dyn Error| format!("{}: {error}", path.display());
+        warnings.extend(self.unused.iter().cloned());
         let surface = match &self.input {
             SurfaceSource::Formulas { sheets, samples, .. } => {
                 let x = self.options.x.unwrap_or(DEFAULT_RANGE);

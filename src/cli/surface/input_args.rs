@@ -12,6 +12,7 @@ use hiddenline::stages::surface::{
 
 use super::input::{SurfaceInput, SurfaceSource};
 use crate::cli::choice::one_of;
+use crate::cli::config;
 use crate::cli::formulas::in_formula;
 use crate::cli::values;
 
@@ -198,7 +199,6 @@ impl SurfaceInputArgs {
         let is_reversed = |range: Option<(f64, f64)>| range.is_some_and(|(from, to)| from > to);
         let sorted = |(from, to): (f64, f64)| (from.min(to), from.max(to));
         Ok(Some(SurfaceInput {
-            input,
             log: AxisName::ALL.map(|axis| self.log.contains(&axis)),
             reversed: [self.x, self.y].map(is_reversed),
             options: HeightOptions {
@@ -212,6 +212,8 @@ impl SurfaceInputArgs {
             outside: self.z_outside,
             z_scale: self.z_scale,
             aspect: self.aspect.unwrap_or(default_aspect),
+            unused: unused_parameters(&input, &parameters, &lists),
+            input,
             parameters: of_sheets,
             names,
         }))
@@ -232,6 +234,30 @@ fn parsed(
         parsed.map_err(|error| in_formula(&which, text, &error))
     };
     texts.iter().enumerate().map(parse).collect()
+}
+
+/// Warnings about parameters that were typed and that no formula names.
+fn unused_parameters(
+    source: &SurfaceSource,
+    fixed: &[Parameter],
+    lists: &[ParameterList],
+) -> Vec<String> {
+    let formulas: Vec<&Formula> = match source {
+        SurfaceSource::Formulas { sheets, .. } => {
+            let heights = sheets.iter().map(|sheet| &sheet.height);
+            heights.chain(sheets.iter().filter_map(|sheet| sheet.domain.as_ref())).collect()
+        }
+        SurfaceSource::Parametric { formulas, .. } => formulas.iter().collect(),
+        SurfaceSource::File(_) | SurfaceSource::Points(_) => Vec::new(),
+    };
+    let fixed = fixed.iter().map(|parameter| ("--set", parameter.name()));
+    let listed = lists.iter().map(|list| ("--for", list.name()));
+    let unused = fixed.chain(listed).filter(|(option, name)| {
+        config::is_typed(option) && !formulas.iter().any(|formula| formula.names(name))
+    });
+    unused
+        .map(|(option, name)| format!("{option} {name}=… has no effect: no formula names {name}"))
+        .collect()
 }
 
 /// A number or a formula without variables, such as `2*pi`.

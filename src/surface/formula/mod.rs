@@ -36,6 +36,7 @@ pub use parameter::{Parameter, ParameterError};
 pub use parameter_list::{MAX_VALUES, ParameterList};
 pub use tape::{CONSTANTS, FUNCTIONS};
 
+use lexer::Token;
 use tape::{Op, Tape};
 use thiserror::Error;
 
@@ -195,6 +196,12 @@ impl Formula {
     /// The text that it was parsed from.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// Whether the formula names a parameter, or anything else, by this name. O(length).
+    pub fn names(&self, name: &str) -> bool {
+        let tokens = lexer::tokens(&self.text).unwrap_or_default();
+        tokens.iter().any(|placed| matches!(&placed.token, Token::Name(other) if other == name))
     }
 
     /// The same with values below `low` raised to it, and those above `high` lowered.

@@ -346,6 +346,15 @@ fn hpgl_sets_speed_and_force_for_each_pen_and_puts_the_last_one_away() {
         .filter(|i| ["SP", "VS", "FS"].iter().any(|name| i.starts_with(name)))
         .collect();
     assert_eq!(set, ["SP1", "VS20", "FS3", "SP2", "VS20", "FS3", "SP0"]);
+    // Without a speed of its own, a pen is not slowed by the layer before it.
+    let mut plot = plot;
+    plot.layers[0].label = Some("1 +S50".into());
+    let profile = hpgl::LoadedPlotter::new(&plot, "hp7475a", None).unwrap();
+    let text = String::from_utf8(written(|out| hpgl::write(&plot, &profile, out))).unwrap();
+    let (_, instructions) = read_hpgl(&text);
+    let set: Vec<&String> =
+        instructions.iter().filter(|i| i.starts_with("SP") || i.starts_with("VS")).collect();
+    assert_eq!(set, ["SP1", "VS19", "SP2", "VS", "SP0"]);
 }
 
 #[test]

@@ -53,6 +53,27 @@ fn material_files_are_found_whatever_their_names_look_like() {
 }
 
 #[test]
+fn materials_that_are_defined_nowhere_are_told_with_their_line() {
+    let (_, stderr) = fill("mtllib m.mtl", "m.mtl", "newmtl red one\nKd 1 0 0\n");
+    let told =
+        "a.obj:11: the material `blue` is not in the material file; its faces have no color\n";
+    assert!(stderr.contains(told), "{stderr}");
+    // One without a diffuse color is defined all the same.
+    let (_, stderr) = fill("mtllib m.mtl", "m.mtl", "newmtl red one\nKd 1 0 0\nnewmtl  blue # 2\n");
+    assert!(!stderr.contains("warning"), "{stderr}");
+    let (_, stderr) = fill("# none", "m.mtl", "newmtl red one\nKd 1 0 0\n");
+    assert!(!stderr.contains("warning"), "{stderr}");
+    let more = "usemtl a\nusemtl b\nusemtl c\nmtllib m.mtl";
+    let (_, stderr) = fill(more, "m.mtl", "newmtl blue\n");
+    assert_eq!(stderr.matches("is not in the material file").count(), 3, "{stderr}");
+    assert!(
+        stderr.contains("`c` is not in the material file; its faces have no color (1 more"),
+        "{stderr}"
+    );
+    assert!(!stderr.contains("red one"), "{stderr}");
+}
+
+#[test]
 fn no_line_of_a_material_file_costs_the_others() {
     let (expected, _) = fill("mtllib m.mtl", "m.mtl", RED_AND_BLUE);
     for odd in ["Kd 0.5", "Kd", "Kd 1 2 three", "Kd nan 0 0", "Kd spectral a.rfl 1"] {

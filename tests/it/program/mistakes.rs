@@ -294,6 +294,18 @@ fn options_without_effect_are_warned_of() {
             &["--overlap", "keep", "--overlap-tolerance", "1"],
             "--overlap-tolerance has no effect with --overlap keep",
         ),
+        (&["--exact", "--smooth", "30"], "--smooth has no effect with --exact"),
+        (&["--smooth-tolerance", "1"], "--smooth-tolerance has no effect without --smooth"),
+        (&["--format", "dxf", "--dxf-dashes", "native"], "--dxf-dashes has no effect without"),
+        (
+            &["--format=dxf", "--pen", "visible=1:speed=9:pause"],
+            "speed of --pen has no effect on dxf",
+        ),
+        (
+            &["--format=gcode", "--pen", "visible=1:height=9"],
+            "height of --pen has no effect on gcode",
+        ),
+        (&["--format=hpgl", "--pen", "visible=1:delay=9"], "delay of --pen has no effect on hpgl"),
         (&["--unit", "m"], "--unit has no effect without --drawing-scale"),
         (
             &["--split-distance", "1mm", "--split-overlap", "5"],
@@ -314,6 +326,8 @@ fn options_without_effect_are_warned_of() {
         (&[&levels[..], &["--exact", "--label-side=uphill"]].concat(), "--label-side has no"),
         (&[&levels[..], &["--exact", "--negative", "dashed"]].concat(), "--negative has no effect"),
         (&["--exact", "--legend"], "--legend has no effect with --exact"),
+        (&["--set", "a=2"], "--set a=… has no effect: no formula names a"),
+        (&["--for", "xy=1,2"], "--for xy=… has no effect: no formula names xy"),
         (&["--names", "a"], "--names has no effect without --legend"),
         (&["--pen", "level=2"], "--pen level=… draws nothing"),
         (&["--pen", "box=2"], "--pen box=… draws nothing"),
@@ -327,6 +341,7 @@ fn options_without_effect_are_warned_of() {
         &[&levels[..], &["--label-side", "uphill", "--negative", "dashed"]].concat(),
         &["--lines", "x,levels", "--every", "80", "--labels", "all", "--label-side", "uphill"],
         &["--legend", "--names", "a"],
+        &["--where", "a*x>0", "--set", "a=2"],
         &["--axes", "box", "--title", "T", "--pen", "box=2", "--pen", "back=3", "--pen", "title=4"],
         &["--axes", "base", "--pen", "box=2", "--pen", "text=3", "--pen", "axis=4"],
     ] {
