@@ -123,20 +123,39 @@ impl<'a, 'input> Reader<'a, 'input> {
     ) -> Result<Option<Rect>, SvgError> {
         // Read once more with its transform undone, so that contents land where `context` says.
         let (_, own) = self.sheet.style(node, &context.style);
-        let own_transform = self.transform(node, &own, context.viewport)?;
+        let own_transform = self.transform(node, &own, context)?;
         let around =
             Context { to_page: context.to_page * own_transform.inverse(), ..context.clone() };
         if !around.to_page.is_finite() {
             return Ok(None);
         }
         let outlines = self.outlines_of(node, &around)?;
-        let to_user = context.to_page.inverse();
-        let points = outlines.iter().flatten().map(|p| to_user * Point::new(p.x, p.y));
-        let mut found: Option<Rect> = None;
-        for p in points {
-            let at = Rect::from_points(p, p);
-            found = Some(found.map_or(at, |all| all.union(at)));
-        }
-        Ok(found.filter(|object| object.is_finite()))
+        Ok(box_of(&outlines, context.to_page.inverse()))
     }
+
+    /// The box of an element's outlines in the coordinates around it, as if it had no transform.
+    pub(super) fn own_box(
+        &mut self,
+        node: Node<'a, 'input>,
+        around: &Context,
+    ) -> Result<Option<Rect>, SvgError> {
+        if !around.to_page.inverse().is_finite() {
+            return Ok(None);
+        }
+        let boxed = self.boxed.replace(node.id());
+        let outlines = self.outlines_of(node, around);
+        self.boxed = boxed;
+        Ok(box_of(&outlines?, around.to_page.inverse()))
+    }
+}
+
+/// The box of lines on the page in user units.
+fn box_of(outlines: &Polylines, to_user: Affine) -> Option<Rect> {
+    let points = outlines.iter().flatten().map(|p| to_user * Point::new(p.x, p.y));
+    let mut found: Option<Rect> = None;
+    for p in points {
+        let at = Rect::from_points(p, p);
+        found = Some(found.map_or(at, |all| all.union(at)));
+    }
+    found.filter(|object| object.is_finite())
 }

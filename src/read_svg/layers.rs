@@ -11,7 +11,8 @@ use crate::plot::{Layer, Pen, Polylines};
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
 /// The groups directly under the root that are layers, with their labels: those that Inkscape marks
-/// as such, or else all with an `id`, as Illustrator and others write them.
+/// as such, or else all with an `id`, as Illustrator and others write them. Layers within layers are apart
+/// only if their label begins with `%`, since machines do not draw those.
 pub(super) fn layer_labels<'a, 'input>(root: Node<'a, 'input>) -> Vec<(Node<'a, 'input>, String)> {
     let groups = || root.children().filter(|node| node.tag_name().name() == "g");
     let is_marked = |node: &Node<'_, '_>| node.attribute((INKSCAPE, "groupmode")) == Some("layer");
@@ -20,7 +21,12 @@ pub(super) fn layer_labels<'a, 'input>(root: Node<'a, 'input>) -> Vec<(Node<'a, 
             let label = group.attribute((INKSCAPE, "label")).or(group.attribute("id"));
             label.unwrap_or_default().to_owned()
         };
-        return groups().filter(is_marked).map(|group| (group, label(group))).collect();
+        let top = groups().filter(is_marked);
+        // Of layers within layers, only those that are never plotted are apart.
+        let guides = root.descendants().filter(|node| {
+            node.parent_element() != Some(root) && is_marked(node) && label(*node).starts_with('%')
+        });
+        return top.chain(guides).map(|group| (group, label(group))).collect();
     }
     let labeled = |group: Node<'a, 'input>| {
         let label = group.attribute((INKSCAPE, "label")).or(group.attribute("data-name"));

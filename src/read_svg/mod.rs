@@ -26,6 +26,7 @@
 //! and `kurbo`.
 
 mod clip;
+mod css;
 mod dash_array;
 mod decode;
 mod layers;
@@ -40,6 +41,7 @@ use std::collections::BTreeSet;
 use roxmltree::{Document, ParsingOptions};
 
 use crate::plot::Plot;
+use css::style_text;
 use layers::numbered;
 use reader::Reader;
 
@@ -172,7 +174,8 @@ pub fn read(text: &str, options: &SvgOptions) -> Result<LineSvg, SvgError> {
     if root.tag_name().name() != "svg" {
         return Err(SvgError::NotSvg(root.tag_name().name().to_owned()));
     }
-    let mut reader = Reader::new(root, options)?;
+    let css = style_text(root);
+    let mut reader = Reader::new(root, &css, options)?;
     reader.read_page(root)?;
     let title = root.children().find(|node| node.tag_name().name() == "title");
     let title = title.and_then(|node| node.text()).unwrap_or_default().trim().to_owned();

@@ -8,10 +8,11 @@ use kurbo::{Affine, Point};
 use roxmltree::{Document, Node, NodeId};
 use rustc_hash::FxHashMap;
 
+use super::css::StyleSheet;
 use super::layers::{PenLines, layer_labels};
 use super::region::{ClipRegion, Keep, Polygon};
 use super::shape::{ShapeFault, ShapeOutline, trace};
-use super::style::{OwnStyle, Style, StyleSheet, parse_length};
+use super::style::{OwnStyle, Style, parse_length};
 use super::{MAX_COORDINATE_MM, MAX_DEPTH, SvgError, SvgOptions, transform};
 use crate::plot::{Pen, Polylines};
 
@@ -56,6 +57,8 @@ pub(super) struct Reader<'a, 'input> {
     pub(super) purpose: Purpose,
     /// Regions of clip paths by element and coordinate system.
     pub(super) regions: FxHashMap<(NodeId, [u64; 6]), Rc<ClipRegion>>,
+    /// The element whose box is being found, and whose own transform does not count.
+    pub(super) boxed: Option<NodeId>,
     /// Clip paths being read.
     pub(super) open_clips: Vec<NodeId>,
     /// Opaque areas, with the number of shapes below each.
@@ -69,7 +72,12 @@ pub(super) struct Reader<'a, 'input> {
 }
 
 impl<'a, 'input> Reader<'a, 'input> {
-    pub(super) fn new(root: Node<'a, 'input>, options: &'a SvgOptions) -> Result<Self, SvgError> {
+    /// `css` is the text of the style sheets.
+    pub(super) fn new(
+        root: Node<'a, 'input>,
+        css: &'a str,
+        options: &'a SvgOptions,
+    ) -> Result<Self, SvgError> {
         let document = root.document();
         let mut ids = FxHashMap::default();
         for node in root.descendants() {
@@ -77,7 +85,7 @@ impl<'a, 'input> Reader<'a, 'input> {
                 ids.entry(id).or_insert(node);
             }
         }
-        let sheet = StyleSheet::new(root);
+        let sheet = StyleSheet::new(css);
         let work = sheet.len().saturating_mul(root.descendants().count());
         if work > 1 << 32 {
             return Err(SvgError::TooMany { what: "style rules times elements", limit: 1 << 32 });
@@ -94,6 +102,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             outlines: Polylines::default(),
             purpose: Purpose::Strokes,
             regions: FxHashMap::default(),
+            boxed: None,
             open_clips: Vec::new(),
             covers: Vec::new(),
             n_shapes: 0,
@@ -261,7 +270,8 @@ impl<'a, 'input> Reader<'a, 'input> {
             return Ok(());
         }
         let mut context = Context { style, depth: around.depth + 1, ..around.clone() };
-        context.to_page *= self.transform(node, &own, context.viewport)?;
+        let transform = self.transform(node, &own, &context)?;
+        context.to_page *= transform;
         if self.purpose == Purpose::Strokes {
             if own.has_mask {
                 self.warn("masks are ignored: lines are drawn whole".to_owned());
@@ -289,8 +299,17 @@ impl<'a, 'input> Reader<'a, 'input> {
         &mut self,
         node: Node<'a, 'input>,
         own: &OwnStyle,
-        size: [f64; 2],
+        around: &Context,
     ) -> Result<Affine, SvgError> {
+        if self.boxed == Some(node.id()) {
+            return Ok(Affine::IDENTITY);
+        }
+        let has_transform = own.transform.is_some() || node.has_attribute("transform");
+        let own_box = match own.turns_in_own_box && has_transform {
+            true => self.own_box(node, around)?,
+            false => None,
+        };
+        let size = own_box.map_or(around.viewport, |own| [own.width(), own.height()]);
         let parsed = match (&own.transform, node.attribute("transform")) {
             (Some(css), _) => match transform::parse_css(css, size) {
                 Ok(transform) => transform,
@@ -305,8 +324,12 @@ impl<'a, 'input> Reader<'a, 'input> {
             }),
             (None, None) => return Ok(Affine::IDENTITY),
         };
-        let Some(origin) = &own.transform_origin else { return Ok(parsed) };
-        transform::about_origin(parsed, origin, size).or_else(|()| {
+        // By default about the corner of the box.
+        let origin = own.transform_origin.as_deref();
+        let origin = origin.or(own_box.is_some().then_some("0 0"));
+        let Some(origin) = origin else { return Ok(parsed) };
+        let corner = own_box.map_or(Point::ZERO, |own| own.origin());
+        transform::about_origin(parsed, origin, size, corner).or_else(|()| {
             self.warn_at(node, &format!("`transform-origin: {origin}` is not understood"));
             Ok(parsed)
         })
@@ -423,7 +446,9 @@ impl<'a, 'input> Reader<'a, 'input> {
             return Ok(());
         }
         self.n_shapes += 1;
-        if self.options.occlude && style.is_opaque() {
+        // What machines do not draw hides nothing that they draw.
+        let is_guide = self.layers[context.layer].trim_start().starts_with('%');
+        if self.options.occlude && !is_guide && style.is_opaque() {
             let clips = context.clips.clone();
             if let Some(polygon) = Polygon::new(&lines, style.fill_rule, clips) {
                 let region = ClipRegion { polygons: vec![polygon], within: Vec::new() };

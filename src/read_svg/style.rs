@@ -1,12 +1,14 @@
 //! Presentation: the few properties that decide what a pen draws, from attributes, style sheets and
 //! `style`, in ascending order of precedence.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::str::FromStr;
 
 use roxmltree::Node;
-use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, Element, PseudoClass};
 use svgtypes::{Length, LengthListParser, LengthUnit, Paint};
 
+use super::css::{Declaration, StyleSheet, declarations, with_variables, without_comments};
 use super::dash_array::DashArray;
 use super::region::FillRule;
 
@@ -29,6 +31,8 @@ pub(super) struct Style {
     pub(super) stroke_width: f64,
     dashes: Vec<Length>,
     dash_offset: Length,
+    /// CSS variables, without their two dashes.
+    variables: Rc<BTreeMap<String, String>>,
 }
 
 /// What a stroke or a fill is painted with.
@@ -55,8 +59,11 @@ impl Ink {
             Ok(Paint::CurrentColor) => (Some(current.to_owned()), 1.0),
             // Gradients and patterns.
             Ok(_) => (Some("#000000".to_owned()), 1.0),
-            // As everywhere in CSS, an invalid value has no effect.
-            Err(_) => return,
+            Err(_) => match color_of(value) {
+                Some(color) => (Some(hex(color)), f64::from(color.alpha) / 255.0),
+                // As everywhere in CSS, an invalid value has no effect.
+                None => return,
+            },
         };
     }
 }
@@ -68,6 +75,8 @@ pub(super) struct OwnStyle {
     pub(super) transform: Option<String>,
     /// `transform-origin`, as a property or an attribute.
     pub(super) transform_origin: Option<String>,
+    /// `transform-box: fill-box`: origin and percentages are of the element's own box.
+    pub(super) turns_in_own_box: bool,
     /// `clip-path`.
     pub(super) clip_path: Option<String>,
     /// Whether there is a `mask`.
@@ -98,6 +107,7 @@ impl Default for Style {
             stroke_width: 1.0,
             dashes: Vec::new(),
             dash_offset: Length::zero(),
+            variables: Rc::default(),
         }
     }
 }
@@ -150,7 +160,7 @@ impl Style {
                 }
             }
             "color" => {
-                if let Ok(color) = svgtypes::Color::from_str(value) {
+                if let Some(color) = color_of(value) {
                     self.color = hex(color);
                 }
             }
@@ -180,6 +190,7 @@ impl Style {
             "stroke-dashoffset" => {
                 self.dash_offset = Length::from_str(value).unwrap_or(around.dash_offset)
             }
+            "transform-box" => own.turns_in_own_box = matches!(value, "fill-box" | "content-box"),
             "transform-origin" => own.transform_origin = Some(value.to_owned()),
             "clip-path" => own.clip_path = Some(value.to_owned()).filter(|value| value != "none"),
             "mask" => own.has_mask = value != "none",
@@ -189,15 +200,42 @@ impl Style {
         }
     }
 
+    /// Takes the CSS variables that are set among `declarations`, in ascending order of precedence.
+    fn set_variables<'a>(&mut self, declarations: impl Iterator<Item = (&'a str, &'a str)>) {
+        let variable = |(name, value)| Some((str::strip_prefix(name, "--")?, value));
+        let set: Vec<_> = declarations.filter_map(variable).collect();
+        if set.is_empty() {
+            return;
+        }
+        let mut variables = BTreeMap::clone(&self.variables);
+        for (name, value) in set {
+            let value = with_variables(value, &variables).into_owned();
+            variables.insert(name.to_owned(), value.trim().to_owned());
+        }
+        self.variables = Rc::new(variables);
+    }
+
     fn set_from_css(&mut self, own: &mut OwnStyle, css: &Declaration<'_>, around: &Self) {
+        let value = with_variables(css.value, &self.variables.clone()).into_owned();
         match css.name {
-            "transform" => own.transform = Some(css.value.to_owned()),
+            "transform" => own.transform = Some(value),
             name if GEOMETRY.contains(&name) => {
-                own.geometry.push((name.to_owned(), css.value.trim().to_owned()));
+                own.geometry.push((name.to_owned(), value.trim().to_owned()));
             }
-            name => self.set(own, name, css.value, around),
+            name => self.set(own, name, &value, around),
         }
     }
+}
+
+/// A color, also with its opacity after a slash, as in `rgb(255 0 0 / 50%)`.
+fn color_of(text: &str) -> Option<svgtypes::Color> {
+    if let Ok(color) = svgtypes::Color::from_str(text) {
+        return Some(color);
+    }
+    let (opaque, alpha) = text.trim().strip_suffix(')')?.rsplit_once('/')?;
+    let mut color = svgtypes::Color::from_str(&format!("{})", opaque.trim())).ok()?;
+    color.alpha = (number(alpha.trim())? * 255.0).round() as u8;
+    Some(color)
 }
 
 /// A number or a percentage, between 0 and 1.
@@ -219,37 +257,21 @@ fn hex(color: svgtypes::Color) -> String {
     format!("#{:02x}{:02x}{:02x}", color.red, color.green, color.blue)
 }
 
-/// The rules of all `<style>` elements.
-pub(super) struct StyleSheet<'a> {
-    rules: simplecss::StyleSheet<'a>,
-}
-
-impl<'a> StyleSheet<'a> {
-    pub(super) fn new(root: Node<'a, '_>) -> Self {
-        let mut rules = simplecss::StyleSheet::new();
-        for node in root.descendants().filter(|node| node.tag_name().name() == "style") {
-            rules.parse_more(node.text().unwrap_or_default());
-        }
-        Self { rules }
-    }
-
-    /// Number of rules.
-    pub(super) fn len(&self) -> usize {
-        self.rules.rules.len()
-    }
-
+impl StyleSheet<'_> {
     /// The style of `node` inside an element of style `around`.
     pub(super) fn style(&self, node: Node<'_, '_>, around: &Style) -> (Style, OwnStyle) {
         let (mut style, mut own) = (around.clone(), OwnStyle::default());
         let attributes = || node.attributes().filter(|a| a.namespace().is_none());
-        let matching = self.rules.rules.iter().filter(|rule| rule.selector.matches(&XmlNode(node)));
-        let mut css: Vec<Declaration<'_>> =
-            matching.flat_map(|rule| &rule.declarations).copied().collect();
-        css.extend(node.attribute("style").into_iter().flat_map(DeclarationTokenizer::from));
+        let inline = without_comments(node.attribute("style").unwrap_or_default());
+        let mut css = self.declarations(node);
+        css.extend(declarations(&inline));
+        style.set_variables(css.iter().map(|css| (css.name, css.value)));
         // The element's color first, since `currentColor` is that wherever it stands.
         for is_color in [true, false] {
             for attribute in attributes().filter(|a| (a.name() == "color") == is_color) {
-                style.set(&mut own, attribute.name(), attribute.value(), around);
+                let value =
+                    with_variables(attribute.value(), &style.variables.clone()).into_owned();
+                style.set(&mut own, attribute.name(), &value, around);
             }
             for important in [false, true] {
                 let of_pass = |css: &&Declaration<'_>| {
@@ -262,30 +284,6 @@ impl<'a> StyleSheet<'a> {
         }
         style.displayed &= style.opacity > 0.0;
         (style, own)
-    }
-}
-
-struct XmlNode<'a, 'input: 'a>(Node<'a, 'input>);
-
-impl Element for XmlNode<'_, '_> {
-    fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(XmlNode)
-    }
-
-    fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(XmlNode)
-    }
-
-    fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
-    }
-
-    fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.0.attribute(name).is_some_and(|value| operator.matches(value))
-    }
-
-    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
-        class == PseudoClass::FirstChild && self.0.prev_sibling_element().is_none()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use kurbo::Affine;
+use kurbo::{Affine, Point};
 use svgtypes::{Angle, Length, TransformOrigin};
 
 use super::style::user_units;
@@ -75,10 +75,15 @@ fn rotation(angle: f64) -> Affine {
     Affine::new([cos, sin, -sin, cos, 0.0, 0.0])
 }
 
-/// `transform` about the origin that `transform-origin` gives; percentages are of `size`.
-pub(super) fn about_origin(transform: Affine, origin: &str, size: [f64; 2]) -> Result<Affine, ()> {
+/// `transform` about the origin that `transform-origin` gives, from `corner`; percentages are of `size`.
+pub(super) fn about_origin(
+    transform: Affine,
+    origin: &str,
+    size: [f64; 2],
+    corner: Point,
+) -> Result<Affine, ()> {
     let origin = TransformOrigin::from_str(origin).map_err(|_| ())?;
-    let x = user_units(origin.x_offset, size[0]).ok_or(())?;
-    let y = user_units(origin.y_offset, size[1]).ok_or(())?;
+    let x = corner.x + user_units(origin.x_offset, size[0]).ok_or(())?;
+    let y = corner.y + user_units(origin.y_offset, size[1]).ok_or(())?;
     Ok(Affine::translate((x, y)) * transform * Affine::translate((-x, -y)))
 }

@@ -153,6 +153,57 @@ fn css_moves_shapes_like_attributes() {
 }
 
 #[test]
+fn transforms_may_be_about_an_elements_own_box() {
+    let path =
+        |style: &str| format!("<path style='transform-box:fill-box;{style}' d='M10 10h20'/>");
+    let centered = "transform-origin:center;transform:rotate(180deg)";
+    assert_line(&path(centered), (30.0, 10.0), (10.0, 10.0));
+    assert_line(&path("transform:scale(2,1)"), (10.0, 10.0), (50.0, 10.0));
+    assert_line(&path("transform:translate(50%)"), (20.0, 10.0), (40.0, 10.0));
+    // A group's box is that of its contents, whose own transforms count.
+    let group = format!("<g style='transform-box:fill-box;{centered}'>{}</g>", path(centered));
+    assert_line(&group, (10.0, 10.0), (30.0, 10.0));
+    // Many levels take no exponential time, or end at a limit.
+    let deep = "<g style='transform-box:fill-box;transform:scale(1)'>".repeat(40);
+    let deep = format!("{deep}<path d='M0 0h1'/>{}", "</g>".repeat(40));
+    let options = SvgOptions { max_elements: 100_000, ..SvgOptions::default() };
+    assert!(matches!(read(&page(&deep), &options), Err(SvgError::TooMany { .. })));
+}
+
+#[test]
+fn css_variables_and_opacity_after_a_slash_are_understood() {
+    let color = |content: &str| {
+        let file = shown(content);
+        file.plot.layers.first().map(|layer| layer.pen.color.clone())
+    };
+    let red = Some("#ff0000".to_owned());
+    for content in [
+        "<style>:root { --ink: red }</style><path stroke='var(--ink)' d='M0 0h1'/>",
+        "<style>.a { --ink: red }</style><g class='a'><path style='stroke:var(--ink)' d='M0 0h1'/></g>",
+        "<path style='stroke:var(--none, red)' d='M0 0h1'/>",
+        "<path style='stroke:var(--none, var(--nor, red))' d='M0 0h1'/>",
+        "<path style='--a: #f00; --b: var(--a); stroke:var(--b)' d='M0 0h1'/>",
+        "<path style='stroke:rgb(255 0 0 / 50%)' d='M0 0h1'/>",
+        "<path stroke='rgb(255 0 0 / 0.5)' d='M0 0h1'/>",
+        "<g color='rgb(255 0 0/1)'><path stroke='currentColor' d='M0 0h1'/></g>",
+    ] {
+        assert_eq!(color(content), red, "{content}");
+    }
+    // An unknown variable leaves what is inherited, a transparent one is no ink.
+    assert_eq!(color("<path style='stroke:var(--none)' d='M0 0h1'/>"), Some("#000000".into()));
+    assert_eq!(color("<path style='stroke:rgb(255 0 0 / 0%)' d='M0 0h1'/>"), None);
+    let width = shown("<path style='--w: 2; stroke-width:var(--w)' d='M0 0h1'/>");
+    assert!((width.plot.layers[0].pen.width_mm - 2.0).abs() < 1e-9);
+    // Variables that name themselves, and that grow without end, end all the same.
+    let mut growing = "<path style='--v0: 1 1 1 1;".to_owned();
+    for k in 1..30 {
+        growing += &format!("--v{k}: var(--v{0}) var(--v{0}) var(--v{0});", k - 1);
+    }
+    growing += "--x: var(--x); stroke: var(--x); stroke-dasharray: var(--v29)' d='M0 0h1'/>";
+    assert_ink(&growing, 1, 1.0);
+}
+
+#[test]
 fn damaged_data_is_drawn_up_to_the_error_with_a_warning() {
     for (bad, mm) in [
         ("<path d='M10 10h30 foo L50 50'/>", 30.0),
@@ -289,6 +340,19 @@ fn ink_that_svg_does_not_show_is_left_out() {
 fn fills_hide_the_ink_below_when_asked() {
     let options = SvgOptions { occlude: true, ..SvgOptions::default() };
     let occluded = |content: &str| read(&page(content), &options).unwrap();
+    // What machines do not draw hides nothing.
+    let layer = |label: &str, content: &str| {
+        format!("<g inkscape:groupmode='layer' inkscape:label='{label}'>{content}</g>")
+    };
+    let sheet = "<rect x='20' y='20' width='10' height='10' fill='white'/>";
+    let ink = layer("ink", "<path d='M0 25h50'/>");
+    let length_on = |label: &str| {
+        let file = occluded(&(ink.clone() + &layer(label, sheet)));
+        let ink = file.plot.layers.iter().find(|layer| layer.name == "ink").unwrap();
+        ink.lines.length_mm()
+    };
+    assert!((length_on("%guide") - 50.0).abs() < 1e-6);
+    assert!((length_on("guide") - 40.0).abs() < 1e-6);
     let line = "<path d='M0 50h100'/>";
     let check = |content: String, n: usize, mm: f64| {
         let file = occluded(&content);
@@ -349,6 +413,16 @@ fn control_characters_of_labels_are_kept_and_heeded() {
     let layer = |label: &str, y: u32| {
         format!("<g inkscape:groupmode='layer' inkscape:label='{label}'><path d='M1 {y}h9'/></g>")
     };
+    // Layers within layers belong to these, but for those that machines do not draw.
+    let inner = |label: &str| {
+        format!("<g inkscape:groupmode='layer' inkscape:label='{label}'><path d='M0 9h9'/></g>")
+    };
+    let nested = |label: &str| {
+        let outer = "<g inkscape:groupmode='layer' inkscape:label='1 ink'><path d='M0 0h9'/>";
+        let file = shown(&format!("{outer}{}</g>", inner(label)));
+        file.plot.plotted_layers().map(|layer| layer.lines.length_mm()).sum::<f64>()
+    };
+    assert_eq!([nested("part").round(), nested("%part").round()], [18.0, 9.0]);
     let all = [("10 blue", 1), ("2 red", 2), ("%guide", 3), ("!3 pause", 4), ("+S30 slow", 5)];
     let file = shown(&all.map(|(label, y)| layer(label, y)).concat());
     let found: Vec<(u32, String, String)> = file
