@@ -157,7 +157,10 @@ impl From<Paper> for PageOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PageError {
     /// The margins leave no room on the sheet.
-    #[error("margins of {margin_mm} mm leave no room on a page of {width_mm} x {height_mm} mm")]
+    #[error(
+        "margins of {} mm leave no room on a page of {} x {} mm",
+        shown(*margin_mm), shown(*width_mm), shown(*height_mm)
+    )]
     Margins {
         /// The margin.
         margin_mm: f64,
@@ -175,6 +178,11 @@ pub enum PageError {
     /// An orthographic camera has no field of view.
     #[error("an orthographic view has no field of view to fit")]
     NoFieldOfView,
+}
+
+/// A length for people, in thousandths of a millimeter.
+fn shown(mm: f64) -> f64 {
+    (1e3 * mm).round() / 1e3
 }
 
 /// A sheet of paper and the map of the image onto it.

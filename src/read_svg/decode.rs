@@ -1,6 +1,7 @@
 //! From the bytes of a file to its text: gzip is unpacked, and any encoding that XML can declare is
 //! converted.
 
+use std::borrow::Cow;
 use std::io::Read;
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
@@ -10,21 +11,47 @@ use super::SvgError;
 
 /// Bytes of text beyond which a file is refused, unpacked or not.
 pub(super) const MAX_TEXT_BYTES: usize = 1 << 30;
+/// How often a file may have been packed.
+const MAX_PACKINGS: usize = 3;
 /// The XML declaration ends within this many bytes.
 const DECLARATION_BYTES: usize = 512;
 
 /// The text of a file, and a warning where the encoding had to be guessed.
 pub(super) fn decode(bytes: &[u8]) -> Result<(String, Option<String>), SvgError> {
-    if bytes.starts_with(&[0x1f, 0x8b]) {
+    let mut bytes = Cow::Borrowed(bytes);
+    // Some servers pack what is packed.
+    for _ in 0..MAX_PACKINGS {
+        if !bytes.starts_with(&[0x1f, 0x8b]) {
+            break;
+        }
         let mut unpacked = Vec::new();
         let limit = MAX_TEXT_BYTES as u64 + 1;
-        MultiGzDecoder::new(bytes)
+        MultiGzDecoder::new(&*bytes)
             .take(limit)
             .read_to_end(&mut unpacked)
             .map_err(SvgError::Gzip)?;
-        return to_text(&unpacked);
+        bytes = Cow::Owned(unpacked);
     }
-    to_text(bytes)
+    match utf32(&bytes) {
+        Some(text) => Ok((text, None)),
+        None => to_text(&bytes),
+    }
+}
+
+/// Text of four bytes a character, which XML allows and encoding_rs leaves out; `None` for other texts.
+fn utf32(bytes: &[u8]) -> Option<String> {
+    let is_big = bytes.starts_with(b"\0\0\xfe\xff") || bytes.starts_with(b"\0\0\0<");
+    let is_little = bytes.starts_with(b"\xff\xfe\0\0") || bytes.starts_with(b"<\0\0\0");
+    if !is_big && !is_little || bytes.len() > MAX_TEXT_BYTES {
+        return None;
+    }
+    let (words, _) = bytes.as_chunks::<4>();
+    let code = |word: &[u8; 4]| {
+        let code = if is_big { u32::from_be_bytes(*word) } else { u32::from_le_bytes(*word) };
+        char::from_u32(code).unwrap_or(char::REPLACEMENT_CHARACTER)
+    };
+    let text: String = words.iter().map(code).collect();
+    Some(text.trim_start_matches('\u{feff}').to_owned())
 }
 
 fn to_text(bytes: &[u8]) -> Result<(String, Option<String>), SvgError> {

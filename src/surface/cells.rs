@@ -31,7 +31,10 @@ const LONGEST_NUMBER: usize = 400;
 /// lines that begin with `#` or `%`, and what follows a `#` after a blank.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> + Clone {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    text.lines()
+    // Ends of lines as in Unix, Windows and the old Mac OS.
+    let lines =
+        text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    lines
         .enumerate()
         .map(|(k, line)| (k + 1, without_comment(line)))
         .filter(|(_, line)| !line.trim().is_empty())
@@ -111,6 +114,16 @@ impl Separator {
     }
 }
 
+/// Whether a cell that is not a number looks like one with separators between thousands, as `1,234,567.5`
+/// and `1 234.5` do.
+pub(super) fn has_thousands(cell: &str) -> bool {
+    let digits = cell.trim_start_matches(['+', '-', '\u{2212}']);
+    let is_separator = |c: char| ",.'’_ \u{a0}\u{202f}".contains(c);
+    digits.starts_with(|c: char| c.is_ascii_digit())
+        && digits.chars().all(|c| c.is_ascii_digit() || is_separator(c))
+        && digits.contains(is_separator)
+}
+
 /// Reads cells of one file, which has decimal points or decimal commas but not both.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Numbers {
@@ -124,6 +137,11 @@ pub(super) struct MixedDecimals;
 impl Numbers {
     /// Reads one cell.
     pub(super) fn read(&mut self, cell: &str) -> Result<Cell, MixedDecimals> {
+        if let Some(rest) =
+            cell.strip_prefix('\u{2212}').filter(|rest| !rest.starts_with(['+', '-']))
+        {
+            return self.read(&format!("-{rest}"));
+        }
         // Most cells are plain numbers.
         let unsigned = cell.strip_prefix('+').filter(|rest| !rest.starts_with(['+', '-']));
         let cell = unsigned.unwrap_or(cell);
@@ -182,6 +200,24 @@ mod tests {
             let cells: Vec<&str> = Separator::of(line).cells(line).collect();
             assert_eq!(cells, expected, "{line}");
         }
+    }
+
+    #[test]
+    fn minus_signs_and_thousands() {
+        let read = |cell: &str| Numbers::default().read(cell).ok();
+        assert_eq!(read("\u{2212}1.5"), Some(Cell::Number(-1.5)));
+        assert_eq!(read("\u{2212}1,5"), Some(Cell::Number(-1.5)));
+        assert_eq!(read("\u{2212}-1"), Some(Cell::Word));
+        assert_eq!(read("\u{2212}\u{2212}1"), Some(Cell::Word));
+        let cells = ["1,234,567", "1,234.5", "-1.234,5", "1 234.5", "1'234", "12\u{202f}345"];
+        assert!(cells.iter().all(|cell| has_thousands(cell) && read(cell) == Some(Cell::Word)));
+        assert!(!["x", "1x", "", "-", "2024-01-01", "12"].iter().any(|cell| has_thousands(cell)));
+    }
+
+    #[test]
+    fn lines_end_as_on_any_system() {
+        let found: Vec<(usize, &str)> = lines("1\r2\r\n3\n\r4\r").collect();
+        assert_eq!(found, [(1, "1"), (2, "2"), (3, "3"), (5, "4")]);
     }
 
     #[test]

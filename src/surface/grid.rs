@@ -70,7 +70,10 @@ pub enum Holes {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GridError {
     /// Fewer than two samples along an axis.
-    #[error("{found} samples along {axis} make no surface; at least 2 are needed")]
+    #[error(
+        "{found} {} no surface along {axis}; at least 2 are needed",
+        if *found == 1 { "sample makes" } else { "samples make" }
+    )]
     TooFew {
         /// `x` or `y`.
         axis: char,

@@ -15,6 +15,8 @@ pub struct ScatteredPoints {
     pub lines: Vec<usize>,
     /// How many lines before the first point hold words.
     pub n_titles: usize,
+    /// How many cells the first point's line has besides x, y and z.
+    pub n_other_cells: usize,
     /// How many points were left out because their z is missing.
     pub n_without_height: usize,
 }
@@ -136,6 +138,9 @@ impl ScatteredPoints {
                     continue;
                 }
                 _ => return Err(PointsError::NotAPoint { line }),
+            }
+            if known.is_none() {
+                read.n_other_cells = separator.cells(text).count().saturating_sub(3);
             }
             (known, numbers) = (Some(separator), trial);
         }

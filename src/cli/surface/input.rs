@@ -81,6 +81,22 @@ fn noted(path: &Path, note: &HeightNote) -> String {
     }
 }
 
+/// Cells on a line of points, besides x, y and z, that colors, normals and intensities fill.
+const MOST_OTHER_CELLS: usize = 7;
+
+/// The hint at `--grid`, for lines with more numbers than points have.
+fn looks_like_a_grid(path: &Path, read: &ScatteredPoints) -> Option<String> {
+    let n = 3 + read.n_other_cells;
+    let is_short = read.n_other_cells > 0 && read.points.len() <= n;
+    (is_short || read.n_other_cells > MOST_OTHER_CELLS).then(|| {
+        let path = path.display();
+        format!(
+            "the {n} numbers on each line of {path} look like heights in rows; if so, use --grid \
+             {path} instead of --points {path}"
+        )
+    })
+}
+
 /// The same for scattered points; `None` if none was left out.
 fn omitted(path: &Path, read: &ScatteredPoints, n_merged: usize) -> Option<String> {
     let parts =
@@ -133,7 +149,14 @@ impl SurfaceInput {
                 let merged = read.merge(self.duplicates);
                 let n_merged = merged.map_err(|error| with_lines(path, &error, &read.lines))?;
                 warnings.extend(omitted(path, &read, n_merged));
-                Surface::points(read.points).map_err(|error| failed(path, &error))?
+                let grid = looks_like_a_grid(path, &read);
+                let made = Surface::points(read.points);
+                let made = made.map_err(|error| {
+                    let hint = grid.as_ref().map_or_else(String::new, |hint| format!("; {hint}"));
+                    failed(path, &error) + &hint
+                });
+                warnings.extend(grid.filter(|_| made.is_ok()));
+                made?
             }
             SurfaceSource::Parametric { formulas, u, v, samples } => {
                 let surface = Surface::parametric_formulas((**formulas).clone(), *u, *v);

@@ -17,6 +17,7 @@ mod tiff;
 
 use thiserror::Error;
 
+use super::cells::has_thousands;
 use super::grid::{Grid, GridError, MAX_SAMPLES};
 use crate::read::FeatureOff;
 
@@ -99,6 +100,20 @@ fn skipped(n: usize) -> &'static str {
     if n == 1 { "was skipped" } else { "were skipped" }
 }
 
+/// What to do about separators between thousands.
+fn thousands(cell: &str) -> &'static str {
+    if has_thousands(cell) { "; numbers have no separators between thousands" } else { "" }
+}
+
+/// What a decoder says, in other words where it speaks of its buffers.
+#[cfg(any(feature = "png", feature = "tiff"))]
+fn of_picture(error: &str) -> &str {
+    match error {
+        "failed to fill whole buffer" | "unexpected end of file" => "the file ends too early",
+        _ => error,
+    }
+}
+
 fn list(names: &[String]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     names.join(", ")
@@ -124,7 +139,7 @@ pub enum HeightError {
         expected: usize,
     },
     /// A cell that is not a number.
-    #[error("line {line}, cell {cell}: `{text}` is not a number")]
+    #[error("line {line}, cell {cell}: `{text}` is not a number{}", thousands(.text))]
     NotANumber {
         /// In the file.
         line: usize,
@@ -166,11 +181,11 @@ pub enum HeightError {
     Npz(String),
     /// A PNG that cannot be decoded.
     #[cfg(feature = "png")]
-    #[error("PNG: {0}")]
+    #[error("PNG: {}", of_picture(&.0.to_string()))]
     Png(#[from] ::png::DecodingError),
     /// A TIFF that cannot be decoded.
     #[cfg(feature = "tiff")]
-    #[error("TIFF: {0}")]
+    #[error("TIFF: {}", of_picture(&.0.to_string()))]
     Tiff(#[from] ::tiff::TiffError),
     /// The format is not in this build.
     #[error(transparent)]

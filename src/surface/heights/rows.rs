@@ -2,7 +2,7 @@
 
 use super::raster::{NoData, Raster};
 use super::{HeightError, HeightNote};
-use crate::surface::cells::{Cell, Numbers, Separator, lines};
+use crate::surface::cells::{Cell, Numbers, Separator, has_thousands, lines};
 
 /// Three columns with at least this many rows are more likely a list of points than a narrow grid.
 const ROWS_OF_A_LIST: usize = 16;
@@ -99,7 +99,16 @@ pub(super) fn read(
 fn is_title(row: &str, next: Option<&(usize, &str)>) -> bool {
     let mut kinds = kinds(row);
     let begins_with_number = matches!(kinds.next(), Some(Cell::Number(_)));
-    !begins_with_number && kinds_have_word(row) && !has_coordinates(row, next)
+    !begins_with_number
+        && kinds_have_word(row)
+        && !has_coordinates(row, next)
+        && !Separator::of(row).cells(row).all(is_number_of_sorts)
+}
+
+/// A number, or what is meant as one.
+fn is_number_of_sorts(cell: &str) -> bool {
+    let kind = Numbers::default().read(cell);
+    has_thousands(cell) || matches!(kind, Ok(Cell::Number(_)))
 }
 
 fn kinds_have_word(row: &str) -> bool {
@@ -114,6 +123,7 @@ fn has_coordinates(row: &str, next: Option<&(usize, &str)>) -> bool {
     let first = kinds.next();
     let is_first_free = match (separator, separator.cells(row).next()) {
         (Separator::Char(_), Some("")) => true,
+        (_, Some(cell)) if has_thousands(cell) => false,
         _ => first == Some(Cell::Word),
     };
     let mut n_numbers = 0;

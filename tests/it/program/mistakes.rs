@@ -199,6 +199,50 @@ fn files_of_another_kind_are_told() {
 }
 
 #[test]
+fn what_is_wrong_with_a_file_of_heights_is_told() {
+    let (_keep, folder) = with_files();
+    let heights = |option: &str, content: &[u8], told: &str| {
+        fs::write(folder.join("h.dat"), content).unwrap();
+        fails(&folder, &["surface", option, "h.dat", "-o", "x.svg"], 1, told);
+    };
+    let apart = "line 1, cell 1: `1,234,567.5` is not a number; numbers have no separators between";
+    heights("--grid", b"1,234,567.5;2;3\n4;5;6\n7;8;9\n", apart);
+    heights(
+        "--grid",
+        "a b\n1 2\n1'000 3\n".as_bytes(),
+        "line 3, cell 1: `1'000` is not a number; n",
+    );
+    heights("--grid", b"1 2 3\n", "1 sample makes no surface along y");
+    heights("--grid", b"II*\0\x08\0\0\0", "TIFF: the file ends too early");
+    heights(
+        "--points",
+        b"1 2 3 4\n4 5 6 7\n7 8 9 1\n",
+        "use --grid h.dat instead of --points h.dat",
+    );
+    // Ends of lines of the old Mac OS, and minus signs of typesetters.
+    for text in ["1\u{2212} 2\r4 5\r", "1 \u{2212}2\r4 5\r"] {
+        fs::write(folder.join("h.dat"), text).unwrap();
+        let is_number = !text.starts_with("1\u{2212}");
+        let code = if is_number { 0 } else { 1 };
+        let said = told(&folder, &["surface", "--grid", "h.dat", "-o", "x.svg"], code);
+        assert_eq!(said.contains("2 × 2 samples"), is_number, "{said}");
+    }
+    // Many columns are a grid, and a few may be colors.
+    let row = |n: usize, k: usize| {
+        (0..n).map(|j| format!("{} ", j * j + 7 * k * k * (j % 2 + 1))).collect::<String>() + "\n"
+    };
+    for (n, is_told) in [(12, true), (7, false)] {
+        let text: String = (0..30).map(|k| row(n, k)).collect();
+        fs::write(folder.join("h.dat"), text.replace("0 ", "0.5 ")).unwrap();
+        let mut arguments = vec!["surface", "--points", "h.dat", "-o", "x.svg"];
+        arguments.extend(["--duplicates", "first"]);
+        let output = super::hiddenline(&folder, &arguments);
+        let said = super::text(&output.stderr);
+        assert_eq!(said.contains("use --grid h.dat instead"), is_told, "{n}: {said}");
+    }
+}
+
+#[test]
 fn the_place_of_an_error_in_a_formula_is_marked() {
     let (_keep, folder) = with_files();
     let second = ["surface", "x", "y + 2x"];

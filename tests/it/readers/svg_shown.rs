@@ -59,6 +59,9 @@ fn files_are_read_in_any_encoding_they_declare() {
         let unit = |u: u16| if be { u.to_be_bytes() } else { u.to_le_bytes() };
         text.encode_utf16().flat_map(unit).collect()
     };
+    let utf32 = |bytes: fn(u32) -> [u8; 4], before: &str| -> Vec<u8> {
+        before.chars().chain(text.chars()).flat_map(|c| bytes(c.into())).collect()
+    };
     let latin1: Vec<u8> = format!("<?xml version=\"1.0\" encoding='ISO-8859-1'?>{text}")
         .chars()
         .map(|c| c as u8)
@@ -75,6 +78,11 @@ fn files_are_read_in_any_encoding_they_declare() {
         latin1.clone(),
         zipped(text.as_bytes()),
         zipped(&latin1),
+        zipped(&zipped(text.as_bytes())),
+        utf32(u32::to_le_bytes, ""),
+        utf32(u32::to_be_bytes, ""),
+        utf32(u32::to_le_bytes, "\u{feff}"),
+        utf32(u32::to_be_bytes, "\u{feff}<?xml version='1.0' encoding='UTF-32'?>"),
         [zipped(&text.as_bytes()[..40]), zipped(&text.as_bytes()[40..])].concat(),
     ];
     for (i, bytes) in files.iter().enumerate() {
