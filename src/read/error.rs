@@ -176,6 +176,16 @@ pub enum Fault {
     /// A 3MF archive, or the XML in it, is wrong.
     #[error("this is not valid 3MF: {0}; export the model again")]
     ThreeMf(String),
+    /// Something within a part of an archive.
+    #[error("part {part}, line {line}: {fault}")]
+    InPart {
+        /// The part, as the archive names it.
+        part: String,
+        /// The line in the part, counted from 1.
+        line: u32,
+        /// What is wrong there.
+        fault: Box<Fault>,
+    },
     /// An archive that would unpack to far more than a model.
     #[error("it unpacks to far more than a model of its size; export the model again")]
     TooMuchUnpacked,

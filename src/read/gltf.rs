@@ -51,15 +51,25 @@ fn read_root(bytes: &[u8], folder: Option<&Path>) -> Result<Parsed, Fault> {
         parsed: Parsed { unit_mm: Some(1000.0), ..Parsed::default() },
         parts: PartTable::default(),
         n_points: 0,
+        n_leftover: 0,
     };
     builder.add_scene()?;
-    let Builder { mut parsed, parts, n_points, .. } = builder;
+    let Builder { mut parsed, parts, n_points, n_leftover, .. } = builder;
+    if root.extensions_used.iter().any(|name| name == INSTANCES) {
+        parsed.notices.push(Notice::Extension { name: INSTANCES.to_owned() });
+    }
+    if n_leftover > 0 {
+        parsed.notices.push(Notice::LeftoverIndices { count: n_leftover });
+    }
     if n_points > 0 {
         parsed.notices.push(Notice::Points { count: n_points, first_line: None });
     }
     parsed.set_parts(parts);
     Ok(parsed)
 }
+
+/// Many copies of one mesh by a list of their transforms.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
 /// Refuses files that require an extension that changes the geometry.
 fn check_extensions(root: &Root) -> Result<(), Fault> {
@@ -84,6 +94,8 @@ struct Builder<'a> {
     parts: PartTable,
     /// Points that are left out.
     n_points: usize,
+    /// Indices that make no whole triangle or line.
+    n_leftover: usize,
 }
 
 impl Builder<'_> {
@@ -187,6 +199,11 @@ impl Builder<'_> {
         let mode = match primitive.mode {
             Checked::Valid(mode) => mode,
             Checked::Invalid => return Err(Fault::Gltf("a primitive of unknown mode".to_owned())),
+        };
+        self.n_leftover += match mode {
+            Mode::Triangles => indices.len() % 3,
+            Mode::Lines => indices.len() % 2,
+            _ => 0,
         };
         match mode {
             Mode::Points => self.n_points += indices.len(),

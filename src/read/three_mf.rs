@@ -16,13 +16,14 @@
 mod archive;
 mod part;
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::DAffine3;
 
 use super::Parsed;
 use super::error::{Fault, Located};
 use super::parts::PartTable;
+use super::warning::Notice;
 use crate::model::mesh::{MeshError, MeshPart};
 use archive::Archive;
 use part::{Component, ModelPart, Object, Triangle};
@@ -67,7 +68,11 @@ fn read_archive(bytes: &[u8]) -> Result<Parsed, Fault> {
     for item in &items {
         builder.add(&root, item, DAffine3::IDENTITY, &mut Vec::new())?;
     }
-    let Builder { mut parsed, table, .. } = builder;
+    let Builder { mut parsed, table, parts, .. } = builder;
+    let extensions: BTreeSet<&str> =
+        parts.values().flat_map(|part| part.extensions.iter().copied()).collect();
+    let notice = |name: &str| Notice::Extension { name: name.to_owned() };
+    parsed.notices.extend(extensions.into_iter().map(notice));
     parsed.set_parts(table);
     Ok(parsed)
 }

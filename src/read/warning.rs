@@ -75,6 +75,16 @@ pub enum Notice {
         /// How many.
         count: usize,
     },
+    /// Indices at the end of a list that make no whole triangle or line.
+    LeftoverIndices {
+        /// How many.
+        count: usize,
+    },
+    /// An extension of the format that adds to the shape and is not read.
+    Extension {
+        /// Its name.
+        name: String,
+    },
 }
 
 impl fmt::Display for Notice {
@@ -110,6 +120,16 @@ impl fmt::Display for Notice {
             Self::TrailingBytes { count } => {
                 write!(f, "{} after the end of the model ignored", counted(*count, "byte"))
             }
+            Self::LeftoverIndices { count } => write!(
+                f,
+                "{} at the end of a list left out: they make no whole triangle or line",
+                counted(*count, "vertex number")
+            ),
+            Self::Extension { name } => write!(
+                f,
+                "the extension {name} is not read: parts of the model may be missing; export the \
+                 model without it"
+            ),
         }
     }
 }

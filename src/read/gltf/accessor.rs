@@ -77,17 +77,22 @@ impl<'a> Accessors<'a> {
         let count = accessor.count.0;
         let n_sparse = accessor.sparse.as_ref().map_or(0, |sparse| sparse.count.0);
         let n_reads = count.saturating_add(n_sparse);
-        self.budget = self.budget.checked_sub(n_reads).ok_or(Fault::TooManyInstances)?;
-        let is_normalized = accessor.normalized;
-        let mut elements = match accessor.buffer_view {
+        let layout = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                let layout = self.layout(view, offset, count, component, kind)?;
+                Some(self.layout(view, offset, count, component, kind)?)
+            }
+            None if accessor.sparse.is_some() => None,
+            None => return Err(wrong("has no data; it may be compressed")),
+        };
+        self.budget = self.budget.checked_sub(n_reads).ok_or(Fault::TooManyInstances)?;
+        let is_normalized = accessor.normalized;
+        let mut elements = match layout {
+            Some(layout) => {
                 let layout = Layout { is_normalized, ..layout };
                 (0..count as usize).map(|i| read(layout, i)).collect()
             }
-            None if accessor.sparse.is_some() => vec![zero; count as usize],
-            None => return Err(wrong("has no data; it may be compressed")),
+            None => vec![zero; count as usize],
         };
         if let Some(sparse) = &accessor.sparse {
             let Checked::Valid(index_type) = sparse.indices.component_type else {

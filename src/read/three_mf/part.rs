@@ -1,6 +1,6 @@
 //! One `.model` part: its unit, objects, materials and build items.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::{DAffine3, DVec3};
 use roxmltree::{Document, Node};
@@ -19,6 +19,8 @@ pub(super) struct ModelPart {
     /// By the number of their group, and their place within it.
     pub(super) materials: HashMap<(u32, u32), Material>,
     pub(super) items: Vec<Component>,
+    /// Extensions that it requires, that add to the shape, and that are not read.
+    pub(super) extensions: BTreeSet<&'static str>,
 }
 
 /// A mesh, or an assembly of other objects.
@@ -51,18 +53,47 @@ pub(super) struct Material {
     pub(super) color: Option<[u8; 3]>,
 }
 
+/// A fault, and where in the text of the part it is.
+struct Placed {
+    at: usize,
+    fault: Fault,
+}
+
+/// A fault of `node`.
+fn at(node: Node<'_, '_>, fault: Fault) -> Placed {
+    Placed { at: node.range().start, fault }
+}
+
+/// The extensions of 3MF that add to the shape and are not read, by the ends of their namespaces.
+const SHAPING: [(&str, &str); 5] = [
+    ("/beamlattice/2017/02", "Beam Lattice"),
+    ("/balls/2020/07", "Beam Lattice"),
+    ("/slice/2015/07", "Slice"),
+    ("/booleanoperations/2023/07", "Boolean Operations"),
+    ("/volumetric/2022/01", "Volumetric"),
+];
+
 impl ModelPart {
     /// Reads the XML of a part; `name` is for messages.
     pub(super) fn parse(text: &str, name: &str) -> Result<Self, Fault> {
         let options = roxmltree::ParsingOptions { nodes_limit: MOST_NODES, ..Default::default() };
         let document = Document::parse_with_options(text, options)
             .map_err(|error| Fault::ThreeMf(format!("part {name}: {error}")))?;
-        let root = document.root_element();
+        let placed = |placed: Placed| Fault::InPart {
+            part: name.to_owned(),
+            line: document.text_pos_at(placed.at).row,
+            fault: Box::new(placed.fault),
+        };
+        Self::of(document.root_element()).map_err(placed)
+    }
+
+    fn of(root: Node<'_, '_>) -> Result<Self, Placed> {
         let mut part = Self {
             unit_mm: unit_mm(root)?,
             objects: HashMap::new(),
             materials: HashMap::new(),
             items: Vec::new(),
+            extensions: extensions(root),
         };
         let resources = children(root, "resources").flat_map(|resources| resources.children());
         for resource in resources.filter(Node::is_element) {
@@ -99,7 +130,16 @@ fn children<'a, 'input: 'a>(
     node.children().filter(move |child| child.tag_name().name() == name)
 }
 
-fn unit_mm(model: Node<'_, '_>) -> Result<f64, Fault> {
+/// The extensions in [`SHAPING`] that a model requires.
+fn extensions(model: Node<'_, '_>) -> BTreeSet<&'static str> {
+    let required = model.attribute("requiredextensions").unwrap_or_default().split_whitespace();
+    let spaces: Vec<&str> =
+        required.filter_map(|prefix| model.lookup_namespace_uri(Some(prefix))).collect();
+    let is_required = |end: &str| spaces.iter().any(|space| space.ends_with(end));
+    SHAPING.iter().filter(|(end, _)| is_required(end)).map(|(_, name)| *name).collect()
+}
+
+fn unit_mm(model: Node<'_, '_>) -> Result<f64, Placed> {
     Ok(match model.attribute("unit") {
         Some("micron") => 0.001,
         None | Some("millimeter") => 1.0,
@@ -109,12 +149,12 @@ fn unit_mm(model: Node<'_, '_>) -> Result<f64, Fault> {
         Some("meter") => 1000.0,
         Some(other) => {
             let unit = shown(other.as_bytes());
-            return Err(Fault::ThreeMf(format!("`{unit}` is not a unit of 3MF")));
+            return Err(at(model, Fault::ThreeMf(format!("`{unit}` is not a unit of 3MF"))));
         }
     })
 }
 
-fn object(node: Node<'_, '_>) -> Result<Object, Fault> {
+fn object(node: Node<'_, '_>) -> Result<Object, Placed> {
     let mut object = Object {
         name: node.attribute("name").unwrap_or_default().to_owned(),
         property: match (node.attribute("pid"), node.attribute("pindex")) {
@@ -136,7 +176,7 @@ fn object(node: Node<'_, '_>) -> Result<Object, Fault> {
             let corners = [a?, b?, c?];
             if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= n_vertices) {
                 let index = corner.to_string();
-                return Err(Fault::MissingVertex { index, vertices: n_vertices });
+                return Err(at(triangle, Fault::MissingVertex { index, vertices: n_vertices }));
             }
             // The first corner's color counts for all of the triangle.
             let property = match triangle.attribute("p1") {
@@ -160,12 +200,15 @@ fn object(node: Node<'_, '_>) -> Result<Object, Fault> {
     Ok(object)
 }
 
-fn component(node: Node<'_, '_>) -> Result<Component, Fault> {
+fn component(node: Node<'_, '_>) -> Result<Component, Placed> {
     let path = node.attributes().find(|attribute| attribute.name() == "path");
     Ok(Component {
         object: index(node, "objectid")?,
         path: path.map(|path| path.value().trim_start_matches('/').to_owned()),
-        transform: node.attribute("transform").map_or(Ok(DAffine3::IDENTITY), transform)?,
+        transform: node
+            .attribute("transform")
+            .map_or(Ok(DAffine3::IDENTITY), transform)
+            .map_err(|fault| at(node, fault))?,
     })
 }
 
@@ -181,19 +224,19 @@ fn transform(text: &str) -> Result<DAffine3, Fault> {
     Ok(DAffine3::from_cols_array(&numbers))
 }
 
-fn value(node: Node<'_, '_>, name: &'static str) -> Result<f64, Fault> {
-    number(attribute(node, name)?.trim().as_bytes())
+fn value(node: Node<'_, '_>, name: &'static str) -> Result<f64, Placed> {
+    number(attribute(node, name)?.trim().as_bytes()).map_err(|fault| at(node, fault))
 }
 
-fn index(node: Node<'_, '_>, name: &'static str) -> Result<u32, Fault> {
+fn index(node: Node<'_, '_>, name: &'static str) -> Result<u32, Placed> {
     let text = attribute(node, name)?;
-    text.trim().parse().map_err(|_| Fault::BadIndex(shown(text.as_bytes())))
+    text.trim().parse().map_err(|_| at(node, Fault::BadIndex(shown(text.as_bytes()))))
 }
 
-fn attribute<'a>(node: Node<'a, '_>, name: &'static str) -> Result<&'a str, Fault> {
+fn attribute<'a>(node: Node<'a, '_>, name: &'static str) -> Result<&'a str, Placed> {
     let lacks =
         || Fault::ThreeMf(format!("an element `{}` lacks `{name}`", node.tag_name().name()));
-    node.attribute(name).ok_or_else(lacks)
+    node.attribute(name).ok_or_else(|| at(node, lacks()))
 }
 
 /// `#RRGGBB` or `#RRGGBBAA`.

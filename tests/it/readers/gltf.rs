@@ -341,6 +341,27 @@ fn references_and_counts_beyond_what_is_there_are_refused() {
 }
 
 #[test]
+fn what_is_left_out_is_told_and_a_count_that_is_too_large_is_named() {
+    let told = |bytes: Vec<u8>| {
+        good("x.glb", bytes).warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let one =
+        "x.glb: 1 vertex number at the end of a list left out: they make no whole triangle or line";
+    assert_eq!(told(primitive(None, 4)), [one]);
+    assert!(told(primitive(None, 1)).is_empty() && told(primitive(None, 5)).is_empty());
+    let house = Triangles::house();
+    let json = house.gltf_json("", "");
+    let used = json.replacen('{', r#"{"extensionsUsed":["EXT_mesh_gpu_instancing"],"#, 1);
+    let told = told(glb(&used, &house.glb_buffer()));
+    assert!(told.len() == 1 && told[0].contains("EXT_mesh_gpu_instancing is not read"), "{told:?}");
+    for count in ["4000000000", "18446744073709551615"] {
+        let json = json.replacen(r#""count":10"#, &format!(r#""count":{count}"#), 1);
+        let error = refused("x.glb", glb(&json, &house.glb_buffer()));
+        assert!(matches!(error.fault, Fault::Truncated { .. }), "{error}");
+    }
+}
+
+#[test]
 fn glb_chunks_may_be_cut_but_not_short() {
     let whole = Triangles::house().glb();
     for cut in 0..whole.len() {

@@ -157,7 +157,36 @@ fn bombs_are_refused() {
 }
 
 #[test]
+fn extensions_that_add_to_the_shape_are_told() {
+    let with = |attributes: &str| {
+        let head = HEAD.replace("<model ", &format!("<model {attributes} "));
+        let text = format!(
+            "{head}<resources>{}</resources><build><item objectid=\"2\"/></build></model>",
+            tetra(2)
+        );
+        let read = good("x.3mf", three_mf(&[("3D/3dmodel.model", &text)]));
+        read.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let of =
+        |name: &str| format!("xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/{name}\"");
+    let beams = of("beamlattice/2017/02");
+    let told = with(&format!("{beams} requiredextensions=\"p b\""));
+    assert!(
+        told.len() == 1 && told[0].contains("the extension Beam Lattice is not read"),
+        "{told:?}"
+    );
+    assert!(with(&beams).is_empty());
+    let production = of("production/2015/06");
+    assert!(with(&format!("{production} requiredextensions=\"b m\"")).is_empty());
+}
+
+#[test]
 fn what_is_missing_or_wrong_is_named() {
+    // With the part and the line in it.
+    let object =
+        tetra(2).replacen("v1=\"0\"", "v1=\"4\"", 1).replace("<triangles>", "\n\n<triangles>");
+    let error = refused("x.3mf", archive(&object, "<item objectid=\"2\"/>"));
+    assert_message(&error, "x.3mf: ", "part 3D/3dmodel.model, line 3: ");
     for (from, to, part) in [
         ("v1=\"0\"", "v1=\"4\"", "vertex 4, but there are only 4"),
         ("v1=\"0\"", "v1=\"-1\"", "`-1` is not the number of a vertex"),
