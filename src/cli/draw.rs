@@ -37,6 +37,7 @@ use super::models::{ModelArgs, ModelFiles};
 use super::output::{OutputArgs, OutputOptions, check_place};
 use super::page::{self, PageArgs};
 use super::paper::{Notes, PlacedPage, Run};
+use super::progress::Progress;
 use super::scene::Subject;
 use super::smooth::{SmoothArgs, Smoothing};
 use super::{Refused, config, source};
@@ -166,7 +167,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         return many::run(job, many);
     }
     let mut run = Run::start(&job.output)?;
-    let read = || job.files.read();
+    let read = |progress: &Progress| job.files.read(progress);
     let lines = Some(job.draw.lines);
     let Subject { scene, camera, notes } = Subject::read(
         read,

@@ -19,7 +19,7 @@ use hiddenline::stages::optimize::OptimizeOptions;
 use hiddenline::stages::page::{PageOptions, PlotOptions, with_hatch_pen};
 use hiddenline::stages::plot::Layer;
 use hiddenline::stages::read::material_colors;
-use hiddenline::stages::shading::fill::{FillError, FillOptions, Filled, fill_prepared};
+use hiddenline::stages::shading::fill::{FillError, FillOptions, Filled, fill_prepared_watched};
 use hiddenline::stages::shading::white::paint_over;
 use hiddenline::stages::strokes::Strokes;
 use hiddenline::stages::surface::DEFAULT_SAMPLES;
@@ -210,7 +210,7 @@ impl FillArgs {
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
-    let read = || job.input.mesh();
+    let read = |progress: &Progress| job.input.mesh(progress);
     let lines = job.edges.map(|edges| edges.lines);
     let Subject { scene, camera, notes } = Subject::read(
         read,
@@ -231,6 +231,7 @@ pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
         fill.materials.push(found.colors);
         run.notes.warnings.extend(found.warnings);
     }
+    run.progress.stage("preparing");
     let prepared = timed(&mut run.stats.seconds.visibility, || Prepared::new(&scene, fill.engine))
         .map_err(|error| with_remedy(&error.into(), job))?;
     run.stats.engine = prepared.engine().name().into();
@@ -315,7 +316,10 @@ impl Picture<'_> {
                 run.notes.warnings.extend(left_out(picture.n_left_out));
                 Ok(picture.filled)
             }
-            _ => fill_prepared(self.prepared, camera, &options),
+            _ => {
+                let watch = &mut |share| run.progress.share(share);
+                fill_prepared_watched(self.prepared, camera, &options, watch)
+            }
         })
         .map_err(|error| with_remedy(&error, job))?;
         run.progress.stage("drawing");

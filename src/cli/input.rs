@@ -8,6 +8,7 @@ use hiddenline::stages::model::mesh::Mesh;
 
 use super::models::{ModelArgs, ModelFiles};
 use super::paper::Notes;
+use super::progress::Progress;
 use super::surface::{SurfaceInput, SurfaceInputArgs};
 
 #[derive(Args)]
@@ -66,9 +67,9 @@ impl Input {
         }
     }
 
-    pub(super) fn mesh(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
+    pub(super) fn mesh(&self, progress: &Progress) -> Result<(Mesh, Notes), Box<dyn Error>> {
         match self {
-            Self::Files(files) => files.read(),
+            Self::Files(files) => files.read(progress),
             Self::Surface(sheets) => sheets.mesh(),
         }
     }

@@ -11,13 +11,14 @@ use hiddenline::stages::model::arrange::{Arrangement, Pose, UpAxis};
 use hiddenline::stages::model::diagnosis::{open_seams, seems_y_up};
 use hiddenline::stages::model::mesh::{Mesh, Repairs};
 use hiddenline::stages::read::{
-    Fault, Model, ModelFormat, ReadError, material_files, read_bytes, read_file,
+    Fault, Model, ModelFormat, ReadError, material_files, read_bytes, read_file_watched,
 };
 
 use super::choice::one_of;
 use super::messages::counted;
 use super::paper::Notes;
 use super::paths::{is_dash, title};
+use super::progress::Progress;
 use super::values;
 
 #[derive(Args)]
@@ -142,20 +143,23 @@ impl ModelFiles {
         self.models.iter().zip(&self.poses).map(one).collect()
     }
 
-    fn read_one(&self, path: &Path) -> Result<Model, ReadError> {
+    fn read_one(&self, path: &Path, watch: &dyn Fn(f64)) -> Result<Model, ReadError> {
         match self.held.get(path) {
             Some(bytes) => read_bytes(&path.to_string_lossy(), bytes, self.input_format),
-            None => read_file(path, self.input_format),
+            None => read_file_watched(path, self.input_format, watch),
         }
     }
 
     /// Reads them all into one mesh.
-    pub(super) fn read(&self) -> Result<(Mesh, Notes), Box<dyn Error>> {
+    pub(super) fn read(&self, progress: &Progress) -> Result<(Mesh, Notes), Box<dyn Error>> {
         let mut notes = Notes::default();
         let mut models = Vec::with_capacity(self.models.len());
         let mut repairs = Repairs::default();
+        let n_models = self.models.len() as f64;
         for (path, &pose) in self.models.iter().zip(&self.poses) {
-            let model = self.read_one(path).map_err(with_remedy)?;
+            let n_read = models.len() as f64;
+            let watch = |share: f64| progress.share((n_read + share) / n_models);
+            let model = self.read_one(path, &watch).map_err(with_remedy)?;
             notes.warnings.extend(model.warnings.iter().map(ToString::to_string));
             notes.hints.extend(self.up_axis_hint(&model, &title(path)));
             repairs += model.repairs;

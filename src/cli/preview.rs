@@ -22,6 +22,7 @@ use super::input::{Input, InputArgs};
 use super::output::{OutputOptions, check_place};
 use super::paper::{Run, Written};
 use super::paths::is_dash;
+use super::progress::Progress;
 use super::scene::Subject;
 use super::smooth::{SmoothArgs, Smoothing};
 
@@ -131,7 +132,7 @@ fn check_picture(path: Option<&Path>) -> Result<(), Refused> {
 /// Does the job; the error is a message for the user.
 pub(super) fn run(job: &Job) -> Result<(), Box<dyn Error>> {
     let mut run = Run::start(&job.output)?;
-    let read = || job.input.mesh();
+    let read = |progress: &Progress| job.input.mesh(progress);
     let finds_bends = job.edges.is_some();
     let Subject { scene, camera, notes } = Subject::read(
         read,

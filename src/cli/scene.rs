@@ -26,7 +26,7 @@ impl Subject {
     /// Reads a mesh and finds its edges; also where faces cross if `lines` include intersections, and where
     /// bent faces fold and edges are flush if `finds_bends`. Curved parts are refined first.
     pub(super) fn read(
-        mesh: impl FnOnce() -> Result<(Mesh, Notes), Box<dyn Error>>,
+        mesh: impl FnOnce(&Progress) -> Result<(Mesh, Notes), Box<dyn Error>>,
         view: &ViewSource,
         lines: Option<LineSelection>,
         finds_bends: bool,
@@ -35,7 +35,7 @@ impl Subject {
         stats: &mut Stats,
     ) -> Result<Self, Box<dyn Error>> {
         progress.stage("reading");
-        let (mesh, mut notes) = timed(&mut stats.seconds.read, mesh)?;
+        let (mesh, mut notes) = timed(&mut stats.seconds.read, || mesh(progress))?;
         let camera = view.camera(mesh.bounds().unwrap_or_default())?;
         let mesh = match smoothing {
             Some(smoothing) => {
@@ -46,7 +46,7 @@ impl Subject {
         };
         progress.stage("finding edges");
         let needs = Needs::new(lines, finds_bends);
-        let scene = timed(&mut stats.seconds.topology, || needs.scene(mesh));
+        let scene = timed(&mut stats.seconds.topology, || needs.scene(mesh, progress));
         Ok(Self { scene, camera, notes })
     }
 }
@@ -64,9 +64,21 @@ impl Needs {
         Self { finds_bends, crosses }
     }
 
-    pub(super) fn scene(self, mesh: Mesh) -> Scene {
-        let scene = Scene::new(mesh);
-        let scene = if self.finds_bends { scene.with_bends().with_flush_edges() } else { scene };
-        if self.crosses { scene.with_intersections() } else { scene }
+    pub(super) fn scene(self, mesh: Mesh, progress: &Progress) -> Scene {
+        let steps = 1 + 2 * usize::from(self.finds_bends) + 2 * usize::from(self.crosses);
+        let done = |n: usize| progress.share(n as f64 / steps as f64);
+        let mut scene = Scene::new(mesh);
+        done(1);
+        if self.finds_bends {
+            scene = scene.with_bends();
+            done(2);
+            scene = scene.with_flush_edges();
+            done(3);
+        }
+        if self.crosses {
+            progress.stage("finding intersections");
+            scene = scene.with_intersections();
+        }
+        scene
     }
 }

@@ -30,6 +30,7 @@ mod text;
 #[cfg(feature = "3mf")]
 mod three_mf;
 mod warning;
+mod watch;
 
 use std::io::Read;
 use std::path::Path;
@@ -43,6 +44,7 @@ use crate::model::arrange::UpAxis;
 use crate::model::mesh::{Mesh, PolygonSoup, Repairs};
 use error::Located;
 use parts::PartTable;
+use watch::Watch;
 
 /// Model formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -164,6 +166,18 @@ pub struct Model {
 /// # Errors
 /// The file cannot be opened or read, or [`read_bytes`] fails.
 pub fn read_file(path: &Path, format: Option<ModelFormat>) -> Result<Model, ReadError> {
+    read_file_watched(path, format, &|_| {})
+}
+
+/// The same, and tells `watch` now and then which share of the file has been read.
+///
+/// # Errors
+/// As [`read_file`].
+pub fn read_file_watched(
+    path: &Path,
+    format: Option<ModelFormat>,
+    watch: &dyn Fn(f64),
+) -> Result<Model, ReadError> {
     let is_stdin = path.as_os_str() == "-";
     let name = if is_stdin { "<stdin>".to_owned() } else { path.display().to_string() };
     let bytes = if is_stdin {
@@ -174,7 +188,7 @@ pub fn read_file(path: &Path, format: Option<ModelFormat>) -> Result<Model, Read
     };
     let folder = if is_stdin { None } else { Some(path.parent().unwrap_or(Path::new(""))) };
     match bytes {
-        Ok(bytes) => read_named(&name, &bytes, format, folder),
+        Ok(bytes) => read_named(&name, &bytes, format, folder, watch),
         Err(error) => Err(ReadError { name, line: None, fault: Fault::Io(error) }),
     }
 }
@@ -188,7 +202,7 @@ pub fn read_bytes(
     bytes: &[u8],
     format: Option<ModelFormat>,
 ) -> Result<Model, ReadError> {
-    read_named(name, bytes, format, None)
+    read_named(name, bytes, format, None, &|_| {})
 }
 
 /// Reads a model; files that it refers to are looked for in `folder`.
@@ -197,9 +211,10 @@ fn read_named(
     bytes: &[u8],
     format: Option<ModelFormat>,
     folder: Option<&Path>,
+    watch: &dyn Fn(f64),
 ) -> Result<Model, ReadError> {
     let path = Path::new(name);
-    read_model(path, bytes, format.or_else(|| ModelFormat::from_name(path)), folder)
+    read_model(path, bytes, format.or_else(|| ModelFormat::from_name(path)), folder, watch)
         .map_err(|Located { line, fault }| ReadError { name: name.to_owned(), line, fault })
 }
 
@@ -265,20 +280,22 @@ fn read_model(
     bytes: &[u8],
     format: Option<ModelFormat>,
     folder: Option<&Path>,
+    watch: &dyn Fn(f64),
 ) -> Result<Model, Located> {
     if bytes.is_empty() {
         return Err(Fault::Empty.into());
     }
     refuse_other_files(path, bytes, format)?;
     let format = format.or_else(|| ModelFormat::from_content(bytes)).ok_or(Fault::UnknownFormat)?;
+    let watch = Watch::new(watch, bytes.len());
     let mut parsed = match format {
-        ModelFormat::Obj => obj::read(&text::decode(bytes)),
-        ModelFormat::Stl => stl::read(bytes),
+        ModelFormat::Obj => obj::read(&text::decode(bytes), watch),
+        ModelFormat::Stl => stl::read(bytes, &watch),
         #[cfg(feature = "ply")]
-        ModelFormat::Ply => ply::read(bytes),
+        ModelFormat::Ply => ply::read(bytes, &watch),
         #[cfg(not(feature = "ply"))]
         ModelFormat::Ply => Err(Fault::from(FeatureOff { format: "PLY", feature: "ply" }).into()),
-        ModelFormat::Off => off::read(&text::decode(bytes)),
+        ModelFormat::Off => off::read(&text::decode(bytes), &watch),
         #[cfg(feature = "gltf")]
         ModelFormat::Gltf => gltf::read(bytes, folder),
         #[cfg(not(feature = "gltf"))]

@@ -4,12 +4,16 @@ use glam::DVec3;
 
 use super::error::{Fault, Located};
 use super::obj_filter::{Filtered, filter};
+use super::watch::Watch;
 use super::{Parsed, text};
 use crate::model::mesh::{MeshError, PolygonSoup};
 
+/// The share of the time that the first pass takes.
+const SHARE_OF_FILTER: f64 = 0.5;
+
 /// Reads decoded OBJ text.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
-    let filtered = filter(bytes)?;
+pub(super) fn read(bytes: &[u8], watch: Watch<'_>) -> Result<Parsed, Located> {
+    let filtered = filter(bytes, &watch.up_to(SHARE_OF_FILTER))?;
     if filtered.n_faces == 0 && filtered.n_segments == 0 && looks_binary(bytes) {
         return Err(Fault::NotText("OBJ").into());
     }

@@ -19,6 +19,7 @@ use super::obj_normals::Normals;
 use super::parts::PartTable;
 use super::text::{after_line_end, is_blank, is_line_end, name, number, shown};
 use super::warning::Notice;
+use super::watch::Watch;
 use crate::model::mesh::MeshPart;
 
 /// Records that affect neither shape nor names: skipped silently.
@@ -85,7 +86,7 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// A vertex with fewer than three finite numbers, or a face with an invalid vertex.
-pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
+pub(super) fn filter(bytes: &[u8], watch: &Watch<'_>) -> Result<Filtered, Located> {
     let mut out = Filtered { text: Vec::with_capacity(bytes.len() + 1), ..Filtered::default() };
     let mut records = Records::new(bytes);
     let mut naming = Naming::default();
@@ -93,6 +94,7 @@ pub(super) fn filter(bytes: &[u8]) -> Result<Filtered, Located> {
     let mut largest = Largest::default();
     let mut segments = Vec::new();
     while !records.at_end() {
+        watch.at(records.at);
         if copy_plain_vertex(&mut records, &mut out)
             || copy_plain_face(&mut records, &mut out, &mut largest, &mut naming)
         {

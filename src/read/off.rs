@@ -15,6 +15,7 @@ use super::error::{Fault, Located};
 use super::parts::{PartTable, color_of_parts, mean_color};
 use super::text::{Words, number, shown};
 use super::warning::Notice;
+use super::watch::Watch;
 use crate::model::mesh::MeshError;
 
 /// Whether the first word of a text is a keyword of the format, perhaps with a count stuck to it.
@@ -32,12 +33,13 @@ fn keyword(word: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// Reads decoded text.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
+pub(super) fn read(bytes: &[u8], watch: &Watch<'_>) -> Result<Parsed, Located> {
     let mut words = Words::new(bytes, Some(b'#'));
     let header = read_header(&mut words)?;
     let mut parsed = Parsed::default();
     let mut vertex_colors = Vec::new();
     for vertex in 0..header.n_vertices {
+        watch.at(bytes.len() - words.rest().len());
         let first = first_on_line(&mut words, "vertices", header.n_vertices, vertex)?;
         read_vertex(&mut words, first, &mut parsed).map_err(|f| Located::at(words.line(), f))?;
         if header.has_vertex_colors {
@@ -50,6 +52,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     }
     let mut parts = PartTable::default();
     for face in 0..header.n_faces {
+        watch.at(bytes.len() - words.rest().len());
         let first = first_on_line(&mut words, "faces", header.n_faces, face)?;
         let start = parsed.soup.corners.len();
         read_face(&mut words, first, &mut parsed).map_err(|f| Located::at(words.line(), f))?;

@@ -18,6 +18,7 @@ use super::error::{Fault, Located};
 use super::parts::{PartTable, color_of_parts, mean_color};
 use super::text::{Words, shown};
 use super::warning::Notice;
+use super::watch::Watch;
 use crate::model::mesh::MeshError;
 
 /// Elements read at a time.
@@ -164,7 +165,7 @@ impl PropertyAccess for Skipped {
 }
 
 /// Reads PLY of any encoding.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
+pub(super) fn read(bytes: &[u8], watch: &Watch<'_>) -> Result<Parsed, Located> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let bytes = &*with_line_feeds(bytes);
     let bytes = &*without_names_of_numbers(bytes);
@@ -180,7 +181,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
     let mut vertex_colors = Vec::new();
     let mut face_colors = Vec::new();
     for element in header.elements.values() {
-        let mut batches = Batches { reader: &mut reader, header: &header, element, done: 0 };
+        let mut batches = Batches {
+            reader: &mut reader,
+            header: &header,
+            element,
+            done: 0,
+            watch,
+            n_bytes: bytes.len(),
+        };
         match element.name.as_str() {
             "vertex" => read_vertices(&mut batches, &mut parsed, &mut vertex_colors)?,
             "face" => read_faces(&mut batches, n_vertices, &mut parsed, &mut face_colors)?,
@@ -300,6 +308,8 @@ struct Batches<'r, 'a> {
     header: &'r Header,
     element: &'r ElementDef,
     done: usize,
+    watch: &'r Watch<'r>,
+    n_bytes: usize,
 }
 
 impl Batches<'_, '_> {
@@ -315,6 +325,7 @@ impl Batches<'_, '_> {
             .read_payload_for_element(self.reader, &batch, self.header)
             .map_err(|error| self.located(error))?;
         self.done += count;
+        self.watch.at(self.n_bytes.saturating_sub(self.reader.get_ref().len()));
         Ok(Some((line, elements)))
     }
 

@@ -21,6 +21,7 @@ use super::error::{Fault, Located};
 use super::parts::PartTable;
 use super::text::{Words, decode, name, number, shown};
 use super::warning::Notice;
+use super::watch::Watch;
 use crate::model::mesh::{MeshError, MeshPart, PolygonSoup};
 
 const HEADER: usize = 84;
@@ -38,12 +39,12 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 ///
 /// The length decides first: a file exactly as long as its count of triangles requires is binary, even if
 /// it begins with "solid".
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Located> {
+pub(super) fn read(bytes: &[u8], watch: &Watch<'_>) -> Result<Parsed, Located> {
     let text = decode(bytes);
     if !is_whole(bytes) && is_text(&text) {
-        read_text(&text)
+        read_text(&text, watch)
     } else {
-        read_binary(bytes).map_err(Into::into)
+        read_binary(bytes, watch).map_err(Into::into)
     }
 }
 
@@ -83,7 +84,7 @@ fn is_comment(word: &[u8]) -> bool {
     word.starts_with(b"#") || word.starts_with(b";") || word.starts_with(b"//")
 }
 
-fn read_binary(bytes: &[u8]) -> Result<Parsed, Fault> {
+fn read_binary(bytes: &[u8], watch: &Watch<'_>) -> Result<Parsed, Fault> {
     let Some(stated) = triangle_count(bytes) else {
         return Err(Fault::Truncated {
             expected: format!("at least {HEADER} bytes of a binary STL or the word `solid`"),
@@ -114,6 +115,7 @@ fn read_binary(bytes: &[u8]) -> Result<Parsed, Fault> {
     let n_corners = 3 * triangles.len() as u32;
     let mut positions = Vec::with_capacity(n_corners as usize);
     for (index, triangle) in triangles.iter().enumerate() {
+        watch.at(index * TRIANGLE);
         let (floats, _) = triangle.as_chunks::<4>();
         let coordinate = |i: usize| f64::from(f32::from_le_bytes(floats[i]));
         let corner = |i| DVec3::new(coordinate(i), coordinate(i + 1), coordinate(i + 2));
@@ -189,7 +191,7 @@ fn magics_color(header: &[u8]) -> Option<[u8; 3]> {
 }
 
 /// Reads any number of `solid NAME … endsolid`, in any letter case.
-fn read_text(bytes: &[u8]) -> Result<Parsed, Located> {
+fn read_text(bytes: &[u8], watch: &Watch<'_>) -> Result<Parsed, Located> {
     let mut parsed = Parsed::default();
     let mut words = Words::new(bytes, None);
     let mut solids = Vec::new();
@@ -206,7 +208,7 @@ fn read_text(bytes: &[u8]) -> Result<Parsed, Located> {
             break;
         }
         let group = name(words.rest_of_line());
-        read_solid(&mut words, &mut parsed)?;
+        read_solid(&mut words, &mut parsed, &|rest| watch.at(bytes.len() - rest))?;
         parsed.soup.face_parts.resize(parsed.soup.n_faces(), solids.len() as u32);
         solids.push(MeshPart { group, ..MeshPart::default() });
     }
@@ -237,9 +239,15 @@ fn skip_comments(words: &mut Words<'_>, parsed: &mut Parsed) {
     }
 }
 
-/// Reads facets up to and including the line of `endsolid`, or to the end of the file.
-fn read_solid(words: &mut Words<'_>, parsed: &mut Parsed) -> Result<(), Located> {
+/// Reads facets up to and including the line of `endsolid`, or to the end of the file. `watch` is told how
+/// many bytes are left.
+fn read_solid(
+    words: &mut Words<'_>,
+    parsed: &mut Parsed,
+    watch: &dyn Fn(usize),
+) -> Result<(), Located> {
     loop {
+        watch(words.rest().len());
         let start = words.clone();
         let Some(word) = words.next() else {
             let what = "`endsolid` is missing at the end; the facets found are read";

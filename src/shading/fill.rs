@@ -185,8 +185,26 @@ pub fn fill_prepared(
     camera: &Camera,
     options: &FillOptions,
 ) -> Result<Filled, FillError> {
+    fill_prepared_watched(prepared, camera, options, &mut |_| {})
+}
+
+/// The share of the time after which the engine is done, roughly.
+const SHARE_OF_ENGINE: f64 = 0.8;
+
+/// The same, and calls `watch` with the share of the work done, as far as it is known: after each step.
+///
+/// # Errors
+/// As [`fill_prepared`].
+pub fn fill_prepared_watched(
+    prepared: &Prepared,
+    camera: &Camera,
+    options: &FillOptions,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Filled, FillError> {
     options.check()?;
+    watch(0.0);
     let (painting, work) = prepared.solve(camera, &options.settings)?;
+    watch(SHARE_OF_ENGINE);
     let filled = fill_painting(prepared.scene(), camera, &painting, work.engine(), options);
     Ok(Filled { work: Some(work), ..filled })
 }

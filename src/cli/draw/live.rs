@@ -66,11 +66,11 @@ impl Job {
             Some(live) => (live.scene.mesh().clone(), live.notes),
             None => {
                 run.progress.stage("reading");
-                timed(&mut run.stats.seconds.read, || self.files.read())?
+                timed(&mut run.stats.seconds.read, || self.files.read(&run.progress))?
             }
         };
         run.progress.stage("finding edges");
-        let scene = timed(&mut run.stats.seconds.topology, || needs.scene(mesh));
+        let scene = timed(&mut run.stats.seconds.topology, || needs.scene(mesh, &run.progress));
         Ok(Live { scene, needs, notes })
     }
 
@@ -89,7 +89,8 @@ impl Job {
                 let seconds = &mut run.stats.seconds.topology;
                 Some(timed(seconds, || -> Result<Scene, Box<dyn Error>> {
                     let mesh = live.scene.mesh().clone();
-                    Ok(live.needs.scene(smoothing.refine(mesh, &camera, &mut notes)?))
+                    let mesh = smoothing.refine(mesh, &camera, &mut notes)?;
+                    Ok(live.needs.scene(mesh, &run.progress))
                 })?)
             }
             None => None,

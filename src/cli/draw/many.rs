@@ -374,7 +374,7 @@ impl Work<'_> {
     fn frames<'g>(&self, group: &'g Group) -> Result<Frames<'g>, Box<dyn Error>> {
         let (job, views) = (self.job, &self.many.views);
         let mut stats = self.stats.clone();
-        let read = || group.files.read();
+        let read = |progress: &Progress| group.files.read(progress);
         let (lines, is_tidied) = (Some(job.draw.lines), !job.draw.exact);
         let silent = Progress::new(true);
         let Subject { scene, camera, notes } = Subject::read(

@@ -364,7 +364,7 @@ fn plotters_keep_the_controls_of_labels_or_say_that_they_cannot() {
     assert!(!said.contains("warning"), "{said}");
     let layers: Vec<&str> = plt.split("SP").collect();
     assert!(layers[1].starts_with("1;VS40;") && layers[1].contains("NR;"), "{plt}");
-    assert!(layers[2].starts_with("2;\n") && !layers[2].contains("NR;"), "{plt}");
+    assert!(layers[2].starts_with("2;VS;\n") && !layers[2].contains("NR;"), "{plt}");
     let (plt, said) = optimized(folder.path(), &["--machine", "hp7475a"], "o.plt");
     assert!(said.contains("HP 7475A cannot pause before layer 2"), "{said}");
     assert!(plt.contains("SP1;VS19;") && !plt.contains("NR"), "{plt}");

@@ -228,8 +228,8 @@ fn bad_input_is_told_in_one_line() {
     run(&["--grid", "heights"], "line 2: 2 cells, but the first row has 3");
     run(&["--grid", "missing"], "missing: No such file");
     for (content, message) in [
-        (&b"1 2 3\n"[..], "1 samples along y"),
-        (b"1\n2\n", "1 samples along x"),
+        (&b"1 2 3\n"[..], "1 sample makes no surface along y"),
+        (b"1\n2\n", "1 sample makes no surface along x"),
         (b"nan nan\nnan nan\n", "no sample has a height"),
         (b"", "no heights in the file"),
         (b"\x93NUMPY\x01\x00\xff", "NPY: the file ends early"),
