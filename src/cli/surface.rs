@@ -12,7 +12,7 @@ use std::error::Error;
 
 use hiddenline::stages::draw::DEFAULT_SHORTEST_STROKE_MM;
 use hiddenline::stages::draw::surface::{
-    NoLevels, SurfaceError, SurfaceLines, SurfaceNote, draw_surface,
+    NoLevels, SurfaceError, SurfaceLines, SurfaceNote, draw_surface_watched,
 };
 use hiddenline::stages::hatch::{HatchOptions, hatch_surface};
 use hiddenline::stages::optimize::{Effort, OptimizeOptions};
@@ -66,7 +66,8 @@ fn draw(job: &Job, surface: &Surface, mut run: Run) -> Result<(), Box<dyn Error>
     let warnings = &mut run.notes.warnings;
     let view = job.view.framing()?;
     run.progress.stage("drawing");
-    let drawing = draw_surface(surface, &view, &job.lines, &job.page);
+    let watch = &mut |share| run.progress.share(share);
+    let drawing = draw_surface_watched(surface, &view, &job.lines, &job.page, watch);
     let mut drawing = drawing.map_err(|error| failed(job, &error))?;
     if let Some(options) = &job.hatch {
         run.progress.stage("hatching");

@@ -130,10 +130,29 @@ pub fn draw_surface(
     lines: &SurfaceLines,
     page: &PageOptions,
 ) -> Result<SurfaceOutput, SurfaceError> {
+    draw_surface_watched(surface, view, lines, page, &mut |_| {})
+}
+
+/// The share of the time after which the surface is sampled, its scene is known, and its lines are drawn,
+/// roughly.
+const SHARES: [f64; 3] = [0.3, 0.6, 0.9];
+
+/// The same, and calls `watch` with the share of the work done, as far as it is known: after each step.
+///
+/// # Errors
+/// As [`draw_surface`].
+pub fn draw_surface_watched(
+    surface: &Surface,
+    view: &View,
+    lines: &SurfaceLines,
+    page: &PageOptions,
+    watch: &mut dyn FnMut(f64),
+) -> Result<SurfaceOutput, SurfaceError> {
     let mut seconds = Seconds::default();
     let names = surface.sheet_names();
     let SmoothSurface { surface, camera, certificate, heights } =
         timed(&mut seconds.read, || sample(surface, view, lines, page))?;
+    watch(SHARES[0]);
     let mut notes = Vec::new();
     if let Some(certificate) = certificate.filter(|certificate| !certificate.holds()) {
         notes.push(SurfaceNote::Uncertified(certificate));
@@ -176,6 +195,7 @@ pub fn draw_surface(
             Some(timed(&mut seconds.topology, lined)?)
         }
     };
+    watch(SHARES[1]);
     let extent = match &lined {
         Some((lined, _)) => lined.scene.extent(&camera),
         None => surface.extent(&camera).union(Extent::new(cuts.points(), &[], &camera)),
@@ -207,6 +227,7 @@ pub fn draw_surface(
         }
         (None, None) => Default::default(),
     };
+    watch(SHARES[2]);
     drawn.seconds += seconds;
     let drawing = &mut drawn.drawing;
     let ink = Ink::of(drawing, lines, &page);

@@ -425,6 +425,12 @@ impl<'a, 'input> Reader<'a, 'input> {
         if !is_read {
             return Ok(());
         }
+        for (name, value) in &own.geometry {
+            // `calc` and its like are valid where a bad value is not, and then has no effect.
+            if name != "d" && value.contains('(') {
+                self.warn_at(node, &format!("CSS `{name}: {value:.40}` is not understood"));
+            }
+        }
         let mut outline =
             ShapeOutline::new(context.to_page, self.options.tolerance_mm, self.segments_left());
         let damage = trace(node, &own.geometry, context.viewport, &mut outline, |name, of| {

@@ -158,6 +158,8 @@ fn css_moves_shapes_like_attributes() {
     assert_line("<path style=\"d:path('M0 0h50')\"/>", (0.0, 0.0), (50.0, 0.0));
     let space = shown(&path("transform:rotateX(45deg)"));
     assert_eq!(space.warnings.len(), 1);
+    let sum = shown("<rect style='width:calc(1px + 2px)' height='3'/>");
+    assert!(sum.warnings.iter().any(|warning| warning.contains("`width: calc(1px + 2px)` is not")));
 }
 
 #[test]
