@@ -159,6 +159,8 @@ pub mod stages {
 
     pub mod disjoint_sets;
 
+    pub mod groups;
+
     pub mod links;
 
     pub mod model;
@@ -200,8 +202,9 @@ pub mod stages {
 }
 
 use stages::{
-    api, axes, camera, chain, classify, disjoint_sets, drafting, draw, engines, extent, hatch,
-    links, model, optimize, page, plot, predicates, read, shading, strokes, surface, timing, write,
+    api, axes, camera, chain, classify, disjoint_sets, drafting, draw, engines, extent, groups,
+    hatch, links, model, optimize, page, plot, predicates, read, shading, strokes, surface, timing,
+    write,
 };
 
 // Points and vectors, as this crate uses them.

@@ -1,7 +1,7 @@
 //! What can go wrong between a file and a sheet of paper.
 
-use std::io;
 use std::path::PathBuf;
+use std::{fmt, io};
 
 use thiserror::Error as ThisError;
 
@@ -19,7 +19,16 @@ use crate::surface::{FamilyError, GridError, HeightError};
 use crate::write::WriteError;
 
 /// Why a drawing failed.
-#[derive(Debug, ThisError)]
+///
+/// Its `Debug` is its message, so that a `main` that returns it ends with a sentence:
+///
+/// ```
+/// use hiddenline::Scene;
+///
+/// let error = Scene::open("missing.obj").unwrap_err();
+/// assert_eq!(format!("{error:?}"), error.to_string());
+/// ```
+#[derive(ThisError)]
 #[non_exhaustive]
 pub enum Error {
     /// A model file cannot be read.
@@ -94,4 +103,10 @@ pub enum Error {
         /// Why.
         error: io::Error,
     },
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }

@@ -4,6 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::extent::window::Window;
+use crate::groups::Groups;
 use crate::strokes::draft::Draft;
 
 use super::cells::{Cells, MAX_CELLS};
@@ -22,8 +23,8 @@ pub(super) const ROUNDING: f64 = 1e-9;
 /// The segments of a draft by square cells. A segment goes by the number of its first point.
 pub(super) struct SegmentGrid {
     cells: Cells,
-    starts: Vec<u32>,
-    segments: Vec<u32>,
+    /// The segments of each cell.
+    segments: Groups,
     /// The stroke of each point.
     strokes: Vec<u32>,
 }
@@ -52,22 +53,12 @@ impl SegmentGrid {
         let cell = cell.max(ink / (ENTRIES_PER_SEGMENT * n + SPARE_ENTRIES));
         let max_cells = (CELLS_PER_SEGMENT * n + SPARE_ENTRIES).min(MAX_CELLS);
         let cells = Cells::new((low, high), cell, max_cells);
-        // While they are counted and sorted, the entries of a cell belong to the next one.
-        let mut starts = vec![0; cells.len() + 2];
-        for &(_, [a, b]) in &segments {
-            cells.near(a, b, 0.0, |c| starts[c + 2] += 1);
-        }
-        for c in 1..starts.len() {
-            starts[c] += starts[c - 1];
-        }
-        let mut sorted = vec![0; starts.last().map_or(0, |&n| n as usize)];
-        for &(segment, [a, b]) in &segments {
-            cells.near(a, b, 0.0, |c| {
-                sorted[starts[c + 1] as usize] = segment;
-                starts[c + 1] += 1;
-            });
-        }
-        Self { cells, starts, segments: sorted, strokes }
+        let segments = Groups::new(cells.len(), |sorter| {
+            for &(segment, [a, b]) in &segments {
+                cells.near(a, b, 0.0, |c| sorter.put(c, segment));
+            }
+        });
+        Self { cells, segments, strokes }
     }
 
     /// The stroke that a point belongs to.
@@ -79,8 +70,7 @@ impl SegmentGrid {
     /// others; with some more than once.
     pub(super) fn near(&self, a: DVec2, b: DVec2, margin: f64, mut visit: impl FnMut(u32)) {
         self.cells.near(a, b, margin, |c| {
-            let range = self.starts[c] as usize..self.starts[c + 1] as usize;
-            self.segments[range].iter().for_each(|&segment| visit(segment));
+            self.segments.of(c).iter().for_each(|&segment| visit(segment));
         });
     }
 }

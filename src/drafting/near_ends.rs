@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::groups::Groups;
 use crate::strokes::draft::Draft;
 
 use super::Paper;
@@ -22,8 +23,7 @@ const SPARE_CELLS: f64 = (1 << 12) as f64;
 
 /// For each end of a stroke that is not closed the segments near it.
 pub(super) struct SegmentsNearEnds {
-    starts: Vec<u32>,
-    segments: Vec<u32>,
+    segments: Groups,
     /// The stroke of each point.
     strokes: Vec<u32>,
     /// Groups of ends that crowd each other.
@@ -68,20 +68,14 @@ impl SegmentsNearEnds {
         let mut pairs = found.concat();
         pairs.par_sort_unstable();
         pairs.dedup();
-        let mut starts = vec![0; 2 * draft.len() + 1];
-        pairs.iter().for_each(|&(end, _)| starts[end as usize + 1] += 1);
-        for end in 1..starts.len() {
-            starts[end] += starts[end - 1];
-        }
-        let segments = pairs.into_iter().map(|(_, segment)| segment).collect();
-        Self { starts, segments, strokes, crowds: by_cell.crowds }
+        let segments = Groups::of_sorted(2 * draft.len(), pairs);
+        Self { segments, strokes, crowds: by_cell.crowds }
     }
 
     /// The segments near an end, each by the number of its first point, in order. The end's own is one
     /// of them.
     pub(super) fn of(&self, end: u32) -> &[u32] {
-        let end = end as usize;
-        &self.segments[self.starts[end] as usize..self.starts[end + 1] as usize]
+        self.segments.of(end as usize)
     }
 
     /// Groups of ends that are so many in one place that nothing is said of what is near them.
@@ -98,8 +92,7 @@ impl SegmentsNearEnds {
 /// The ends of strokes by cells.
 struct EndsByCell {
     is_used: Vec<u64>,
-    starts: Vec<u32>,
-    ends: Vec<u32>,
+    ends: Groups,
     crowds: Vec<Vec<u32>>,
 }
 
@@ -111,34 +104,24 @@ impl EndsByCell {
             cells.near(at, at, 0.0, |c| sorted.push((c as u32, end)));
         }
         sorted.par_sort_unstable();
-        let mut by_cell = Self {
-            is_used: vec![0; cells.len().div_ceil(64)],
-            starts: vec![0; cells.len() + 1],
-            ends: Vec::with_capacity(sorted.len()),
-            crowds: Vec::new(),
-        };
+        let (mut is_used, mut crowds) = (vec![0; cells.len().div_ceil(64)], Vec::new());
         for of_cell in sorted.chunk_by(|a, b| a.0 == b.0) {
             let c = of_cell[0].0 as usize;
-            let ends = of_cell.iter().map(|&(_, end)| end);
             if of_cell.len() > MAX_ENDS {
-                by_cell.crowds.push(ends.collect());
+                crowds.push(of_cell.iter().map(|&(_, end)| end).collect());
             } else {
-                by_cell.is_used[c / 64] |= 1 << (c % 64);
-                by_cell.starts[c + 1] = of_cell.len() as u32;
-                by_cell.ends.extend(ends);
+                is_used[c / 64] |= 1 << (c % 64);
             }
         }
-        for c in 1..by_cell.starts.len() {
-            by_cell.starts[c] += by_cell.starts[c - 1];
-        }
-        by_cell
+        sorted.retain(|(c, _)| is_used[*c as usize / 64] & 1 << (c % 64) != 0);
+        Self { is_used, ends: Groups::of_sorted(cells.len(), sorted), crowds }
     }
 
     fn of(&self, c: usize) -> &[u32] {
         if self.is_used[c / 64] & 1 << (c % 64) == 0 {
             return &[];
         }
-        &self.ends[self.starts[c] as usize..self.starts[c + 1] as usize]
+        self.ends.of(c)
     }
 }
 

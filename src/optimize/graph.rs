@@ -4,6 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use crate::groups::Groups;
 use crate::plot::Polylines;
 
 /// Ink as vertices and straight edges, without duplicates.
@@ -229,36 +230,21 @@ impl WeldCells {
 }
 
 /// The half-edges that leave each vertex. Half-edge `2e + s` leaves vertex `s` of edge `e`.
-pub(super) struct IncidentEdges {
-    starts: Vec<u32>,
-    half_edges: Vec<u32>,
-}
+pub(super) struct IncidentEdges(Groups);
 
 impl IncidentEdges {
     pub(super) fn new(graph: &Graph) -> Self {
-        let n = graph.positions.len();
-        let mut starts = vec![0u32; n + 1];
-        for &v in graph.edges.iter().flatten() {
-            starts[v as usize + 1] += 1;
-        }
-        for i in 0..n {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut half_edges = vec![0u32; graph.edges.len() * 2];
-        for (e, edge) in graph.edges.iter().enumerate() {
-            for (side, &v) in edge.iter().enumerate() {
-                half_edges[next[v as usize] as usize] = (2 * e + side) as u32;
-                next[v as usize] += 1;
+        Self(Groups::new(graph.positions.len(), |sorter| {
+            let ends = graph.edges.iter().flatten();
+            for (half_edge, &vertex) in (0..).zip(ends) {
+                sorter.put(vertex as usize, half_edge);
             }
-        }
-        Self { starts, half_edges }
+        }))
     }
 
     /// Half-edges that leave `vertex`, in ascending order.
     pub(super) fn of(&self, vertex: u32) -> &[u32] {
-        let range = self.starts[vertex as usize]..self.starts[vertex as usize + 1];
-        &self.half_edges[range.start as usize..range.end as usize]
+        self.0.of(vertex as usize)
     }
 }
 

@@ -12,6 +12,8 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::groups::Groups;
+
 use super::graph::{Graph, IncidentEdges, edge_key, target, unique_edges};
 
 /// Cuts edges where overlapping ones end, and keeps shared pieces once.
@@ -113,8 +115,7 @@ struct VertexGrid {
     cell: f64,
     n_columns: usize,
     n_rows: usize,
-    starts: Vec<u32>,
-    vertices: Vec<u32>,
+    vertices: Groups,
 }
 
 impl VertexGrid {
@@ -133,27 +134,16 @@ impl VertexGrid {
             cell,
             n_columns: (size.x / cell) as usize + 1,
             n_rows: (size.y / cell) as usize + 1,
-            starts: Vec::new(),
-            vertices: vec![0; graph.positions.len()],
+            vertices: Groups::default(),
         };
-        let mut starts = vec![0u32; grid.n_columns * grid.n_rows + 1];
         let cells: Vec<usize> = graph
             .positions
             .iter()
             .map(|p| grid.row(p.y) * grid.n_columns + grid.column(p.x))
             .collect();
-        for &c in &cells {
-            starts[c + 1] += 1;
-        }
-        for c in 1..starts.len() {
-            starts[c] += starts[c - 1];
-        }
-        let mut next = starts.clone();
-        for (vertex, &c) in cells.iter().enumerate() {
-            grid.vertices[next[c] as usize] = vertex as u32;
-            next[c] += 1;
-        }
-        grid.starts = starts;
+        grid.vertices = Groups::new(grid.n_columns * grid.n_rows, |sorter| {
+            (0..).zip(&cells).for_each(|(vertex, &c)| sorter.put(c, vertex));
+        });
         Some(grid)
     }
 
@@ -187,8 +177,7 @@ impl VertexGrid {
             };
             for row in self.row(bottom - slack)..=self.row(top + slack) {
                 let c = row * self.n_columns + column;
-                let range = self.starts[c] as usize..self.starts[c + 1] as usize;
-                self.vertices[range].iter().for_each(|&vertex| visit(vertex));
+                self.vertices.of(c).iter().for_each(|&vertex| visit(vertex));
             }
         }
     }

@@ -74,9 +74,9 @@ use super::sweep::Sweep;
 use super::{LineCounts, VisibilityOptions};
 use crate::classify::ViewedScene;
 use crate::engines::visibility::Visibility;
+use crate::groups::Groups;
 use crate::predicates::CutPlane;
 use ahead::cutting_edges_ahead;
-use box_join::Pairs;
 use cutting::{Stars, cutting_edges};
 use near::near_triangles;
 use places::Places;
@@ -177,7 +177,7 @@ impl Appel<'_, '_> {
         let partners = if options.find_doubled {
             doubled::partners(view, rounding, &segments)
         } else {
-            Pairs::default()
+            Groups::default()
         };
         let builder = SpanBuilder { view, options, sides, partners: &partners, starts: &starts };
         let parts: Vec<(Visibility, Vec<u32>)> = segments
@@ -431,7 +431,7 @@ struct SpanBuilder<'d, 'a> {
     view: &'d ViewedScene<'a>,
     options: &'d VisibilityOptions,
     sides: &'d Sides<'a>,
-    partners: &'d Pairs,
+    partners: &'d Groups,
     starts: &'d Starts,
 }
 

@@ -13,6 +13,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::camera::{Camera, ImagePoint};
+use crate::groups::Groups;
 use crate::model::scene::Scene;
 use crate::shading::normals::{area_vector, corners};
 
@@ -34,9 +35,8 @@ pub(super) struct ShadowGrid<'a> {
     cells_per_unit: f64,
     columns: usize,
     rows: usize,
-    /// Where the triangles of each cell begin in `listed`.
-    starts: Vec<u32>,
-    listed: Vec<u32>,
+    /// The triangles of each cell.
+    by_cell: Groups,
     contact: f64,
 }
 
@@ -68,25 +68,15 @@ impl<'a> ShadowGrid<'a> {
             cells_per_unit,
             columns,
             rows,
-            starts: vec![0; columns * rows + 1],
-            listed: Vec::new(),
+            by_cell: Groups::default(),
             contact: CONTACT * (farthest - nearest),
         };
         let all = 0..scene.triangles().len() as u32;
-        let mut starts = grid.starts.clone();
-        all.clone().for_each(|triangle| grid.for_cells(triangle, |cell| starts[cell + 1] += 1));
-        for cell in 1..starts.len() {
-            starts[cell] += starts[cell - 1];
-        }
-        let mut listed = vec![0; starts[columns * rows] as usize];
-        let mut next = starts.clone();
-        all.for_each(|triangle| {
-            grid.for_cells(triangle, |cell| {
-                listed[next[cell] as usize] = triangle;
-                next[cell] += 1;
+        grid.by_cell = Groups::new(columns * rows, |sorter| {
+            all.clone().for_each(|triangle| {
+                grid.for_cells(triangle, |cell| sorter.put(cell, triangle));
             });
         });
-        (grid.starts, grid.listed) = (starts, listed);
         grid
     }
 
@@ -114,8 +104,10 @@ impl<'a> ShadowGrid<'a> {
         let image = point.image();
         let (column, row) = self.cell(image);
         let cell = row * self.columns + column;
-        let listed = &self.listed[self.starts[cell] as usize..self.starts[cell + 1] as usize];
-        listed.iter().any(|&triangle| triangle != own && self.covers(triangle, image, at))
+        self.by_cell
+            .of(cell)
+            .iter()
+            .any(|&triangle| triangle != own && self.covers(triangle, image, at))
     }
 
     /// Whether a triangle covers a point from the light.

@@ -5,10 +5,11 @@
 
 use super::super::rounding::{Rounding, Separation};
 use super::super::segment::Segment;
-use super::box_join::{LatticeBox, Pairs, meeting_pairs};
+use super::box_join::{LatticeBox, grouped, meeting_pairs};
 use super::cutting::CuttingEdge;
 use super::places::Places;
 use crate::classify::ViewedScene;
+use crate::groups::Groups;
 
 /// The cutting edges that may cross each segment in front of it, or pass over one of its ends.
 ///
@@ -21,7 +22,7 @@ pub(super) fn cutting_edges_ahead(
     segments: &[Option<Segment>],
     boxes: &[LatticeBox],
     cutting: &[CuttingEdge],
-) -> Pairs {
+) -> Groups {
     let mut farthest = vec![0; segments.len()];
     for b in boxes {
         farthest[b.number() as usize] = b.farthest();
@@ -40,5 +41,5 @@ pub(super) fn cutting_edges_ahead(
             }
         }
     });
-    Pairs::new(segments.len(), pairs)
+    grouped(segments.len(), pairs)
 }

@@ -18,6 +18,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::groups::Groups;
+
 /// The lattice has 2 to this power places along each axis.
 const LATTICE_BITS: u32 = 30;
 
@@ -244,34 +246,11 @@ pub(super) fn meeting_pairs<R: Send>(
     parts.into_iter().flatten().collect()
 }
 
-/// For each item of the first set items of the second, in rising order, in one flat array.
-#[derive(Debug, Default)]
-pub(super) struct Pairs {
-    starts: Vec<u32>,
-    seconds: Vec<u32>,
-}
-
-impl Pairs {
-    /// Sorts pairs of which the first numbers are below `n_first`.
-    pub(super) fn new(n_first: usize, mut pairs: Vec<(u32, u32)>) -> Self {
-        pairs.par_sort_unstable();
-        let mut starts = vec![0u32; n_first + 1];
-        for &(first, _) in &pairs {
-            starts[first as usize + 1] += 1;
-        }
-        for i in 0..n_first {
-            starts[i + 1] += starts[i];
-        }
-        Self { starts, seconds: pairs.into_iter().map(|(_, second)| second).collect() }
-    }
-
-    /// The items paired with one of the first set.
-    pub(super) fn of(&self, first: usize) -> &[u32] {
-        match self.starts.get(first..first + 2) {
-            Some(&[start, end]) => &self.seconds[start as usize..end as usize],
-            _ => &[],
-        }
-    }
+/// For each item of the first set items of the second, in rising order: sorts pairs of which the first
+/// numbers are below `n_first`.
+pub(super) fn grouped(n_first: usize, mut pairs: Vec<(u32, u32)>) -> Groups {
+    pairs.par_sort_unstable();
+    Groups::of_sorted(n_first, pairs)
 }
 
 /// A cube of the lattice: its lowest corner in units of its size, 2 to the power of `bits`.
@@ -413,35 +392,23 @@ impl Occupied {
 /// Boxes sorted by the occupied cells that they touch.
 struct Cells<'b> {
     boxes: &'b [LatticeBox],
-    /// Where the boxes of each cell begin in `indices`, and where those of the last end.
-    starts: Vec<u32>,
-    indices: Vec<u32>,
+    /// Their places, by cell.
+    by_cell: Groups,
 }
 
 impl<'b> Cells<'b> {
     fn sort(occupied: &Occupied, touched: &[Vec<Touch>], boxes: &'b [LatticeBox]) -> Self {
-        let n_cells = occupied.cells.len();
-        let mut starts = vec![0u32; n_cells + 2];
-        for &(cell, _) in touched.iter().flatten() {
-            starts[occupied.rank(cell) + 2] += 1;
-        }
-        for i in 2..starts.len() {
-            starts[i] += starts[i - 1];
-        }
-        let mut indices = vec![0; starts[n_cells + 1] as usize];
-        // The start of each cell moves to where the next one starts.
-        for &(cell, index) in touched.iter().flatten() {
-            let slot = &mut starts[occupied.rank(cell) + 1];
-            indices[*slot as usize] = index;
-            *slot += 1;
-        }
-        starts.pop();
-        Self { boxes, starts, indices }
+        let by_cell = Groups::new(occupied.cells.len(), |sorter| {
+            for &(cell, index) in touched.iter().flatten() {
+                sorter.put(occupied.rank(cell), index);
+            }
+        });
+        Self { boxes, by_cell }
     }
 
     /// The places among the boxes of those in one cell.
     fn of(&self, rank: usize) -> &[u32] {
-        &self.indices[self.starts[rank] as usize..self.starts[rank + 1] as usize]
+        self.by_cell.of(rank)
     }
 
     /// Puts the boxes of one cell into `here`.

@@ -18,6 +18,7 @@
 use super::super::occluders::Occluders;
 use super::super::sides::Sides;
 use crate::classify::ViewedScene;
+use crate::groups::Groups;
 use rayon::prelude::*;
 
 /// A side of triangles with more of them on one side of its image than on the other.
@@ -62,40 +63,24 @@ pub(super) fn cutting_edges(
 
 /// The triangles around vertices, of those that hide something.
 #[derive(Debug)]
-pub(super) struct Stars {
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
-}
+pub(super) struct Stars(Groups);
 
 impl Stars {
     /// The occluders around each vertex that is `wanted`. O(vertices + occluders).
     pub(super) fn new(view: &ViewedScene, occluders: &Occluders, wanted: &[bool]) -> Self {
         let triangles = view.scene().triangles();
-        let mut starts = vec![0u32; wanted.len() + 1];
-        for &triangle in occluders.list() {
-            for corner in triangles[triangle as usize] {
-                starts[corner as usize + 1] += u32::from(wanted[corner as usize]);
+        Self(Groups::new(wanted.len(), |sorter| {
+            for &triangle in occluders.list() {
+                let corners = triangles[triangle as usize];
+                for corner in corners.into_iter().filter(|&corner| wanted[corner as usize]) {
+                    sorter.put(corner as usize, triangle);
+                }
             }
-        }
-        for vertex in 0..wanted.len() {
-            starts[vertex + 1] += starts[vertex];
-        }
-        let mut around = vec![0; starts.last().map_or(0, |&n| n as usize)];
-        let mut next = starts.clone();
-        for &triangle in occluders.list() {
-            let corners = triangles[triangle as usize];
-            for corner in corners.into_iter().filter(|&corner| wanted[corner as usize]) {
-                let slot = &mut next[corner as usize];
-                around[*slot as usize] = triangle;
-                *slot += 1;
-            }
-        }
-        Self { starts, triangles: around }
+        }))
     }
 
     /// The triangles around one vertex.
     pub(super) fn around(&self, vertex: u32) -> &[u32] {
-        let vertex = vertex as usize;
-        &self.triangles[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+        self.0.of(vertex as usize)
     }
 }

@@ -8,8 +8,9 @@
 use super::super::index::{ImageIndex, Visitor};
 use super::super::rounding::{Place, Rounding};
 use super::super::segment::Segment;
-use super::box_join::Pairs;
+use super::box_join::grouped;
 use crate::classify::ViewedScene;
+use crate::groups::Groups;
 use crate::predicates::Sign;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -79,7 +80,7 @@ pub(super) fn partners(
     view: &ViewedScene,
     rounding: &Rounding,
     segments: &[Option<Segment>],
-) -> Pairs {
+) -> Groups {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for point in segments.iter().flatten().flat_map(|segment| segment.image) {
         (low, high) = (low.min(point), high.max(point));
@@ -119,7 +120,7 @@ pub(super) fn partners(
     pairs.extend(pairs_by_place(view, rounding, segments, &loose));
     pairs.par_sort_unstable();
     pairs.dedup();
-    Pairs::new(segments.len(), pairs)
+    grouped(segments.len(), pairs)
 }
 
 /// Which bins hold several edges, by a hash; now and then it says so of one with a single edge.

@@ -8,9 +8,10 @@
 
 use super::super::occluders::Occluders;
 use super::super::segment::Segment;
-use super::box_join::{LatticeBox, Pairs, meeting_pairs};
+use super::box_join::{LatticeBox, grouped, meeting_pairs};
 use super::places::Places;
 use crate::classify::ViewedScene;
+use crate::groups::Groups;
 use crate::predicates::{Sign, Viewpoint};
 use rayon::prelude::*;
 
@@ -24,7 +25,7 @@ pub(super) fn near_triangles(
     segments: &[Option<Segment>],
     boxes: &[LatticeBox],
     contact_tolerance: f64,
-) -> Pairs {
+) -> Groups {
     let ends: Vec<[u32; 2]> = segments
         .par_iter()
         .map(|segment| segment.as_ref().map_or([0; 2], |segment| segment.ends))
@@ -35,7 +36,7 @@ pub(super) fn near_triangles(
     let pairs = meeting_pairs(boxes, list.len(), second, |triangle, meeting, found| {
         near.push_meetings(triangle, meeting, found);
     });
-    Pairs::new(segments.len(), pairs)
+    grouped(segments.len(), pairs)
 }
 
 struct Near<'n, 'a> {

@@ -18,11 +18,11 @@
 use super::super::rounding::{Bounds, Rounding};
 use super::super::segment::Segment;
 use super::super::shadow::{Shadow, Sides, shadow, side_of};
-use super::box_join::Pairs;
 use super::cutting::CuttingEdge;
 use super::start::add;
 use crate::camera::ImagePoint;
 use crate::classify::ViewedScene;
+use crate::groups::Groups;
 use crate::predicates::{Cut, CutPlane, Estimate, Sign};
 use std::cmp::Ordering;
 
@@ -41,9 +41,9 @@ pub(super) struct Surroundings<'s> {
     /// The cutting edges.
     pub cutting: &'s [CuttingEdge],
     /// Those that each segment may pass behind.
-    pub ahead: &'s Pairs,
+    pub ahead: &'s Groups,
     /// The triangles near each segment in space.
-    pub near: &'s Pairs,
+    pub near: &'s Groups,
     /// How images are rounded.
     pub rounding: &'s Rounding,
     /// The triangles that the near plane cuts.
