@@ -30,9 +30,7 @@ pub const LEAST_CONTACT_TOLERANCE: f64 = 1.0 / (1 << 19) as f64;
 /// dot is that large anyway.
 pub const DEFAULT_SHORTEST_STROKE_MM: f64 = 0.25;
 
-/// The default distance between thinned lines, in pen widths: it leaves half a pen width of paper between
-/// them.
-pub const DEFAULT_THIN: f64 = 1.5;
+pub use crate::drafting::DEFAULT_THIN;
 
 /// What to draw, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]

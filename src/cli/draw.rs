@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::DVec2;
 use hiddenline::stages::camera::Camera;
-use hiddenline::stages::drafting::Drafted;
+use hiddenline::stages::drafting::{CROWDED_SHARE, Drafted};
 use hiddenline::stages::draw::{DrawOptions, MeshSize, draw, draw_watched};
 use hiddenline::stages::extent::Extent;
 use hiddenline::stages::hatch::{Ground, HatchOptions, HatchPage, hatch, shadow_outlines};
@@ -224,6 +224,7 @@ fn strokes(
     }
     run.stats.count(MeshSize::of(scene));
     run.stats.add(&drawn);
+    run.stats.drafted = (!job.draw.exact).then(|| drawn.drafted.into());
     run.notes.add(drafting_notes(&drawn.drafted, job.draw.thin_mm.is_some()));
     if drawn.drawing.is_empty() {
         run.empty_because = why_empty(job, scene, &sheet, drawn.n_lines);
@@ -231,14 +232,18 @@ fn strokes(
     Ok((drawn.drawing, sheet))
 }
 
-/// Thinning is proposed when more than this share of the ink is crowded.
-const CROWDED_SHARE: f64 = 0.25;
-
 /// What finishing the lines on paper did, and what would help.
 fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
     let mm = |length: f64| format!("{length:.0} mm");
     let done = [
-        (drafted.n_joined > 0, format!("{} ends joined", drafted.n_joined)),
+        (
+            drafted.n_joined > 0,
+            format!(
+                "{} joined across gaps up to {:.2} mm",
+                counted(drafted.n_joined, "end", "ends"),
+                drafted.farthest_mm
+            ),
+        ),
         (
             drafted.n_dropped > 0,
             format!(
@@ -260,10 +265,12 @@ fn drafting_notes(drafted: &Drafted, is_thinned: bool) -> Notes {
         notes.summary = format!("\nlines: {}", done.join(", "));
     }
     if !is_thinned && drafted.crowded_share > CROWDED_SHARE {
+        let saved = drafted.thinnable_mm.map(|length| format!(" and saves {} of ink", mm(length)));
         notes.hints.push(format!(
             "{:.0} % of the ink is within a pen width of other ink; --thin leaves room between \
-             lines",
+             lines{}",
             100.0 * drafted.crowded_share,
+            saved.unwrap_or_default(),
         ));
     }
     notes

@@ -23,7 +23,7 @@ use super::messages::counted;
 use super::output::OutputOptions;
 use super::plotting::Finished;
 use super::progress::Progress;
-use super::stats::{PlotStats, Stats, peak_bytes};
+use super::stats::{PlotStats, SmoothedStats, Stats, peak_bytes};
 use super::{file, machine, messages};
 
 /// What there is to report once all went well.
@@ -35,6 +35,8 @@ pub(super) struct Notes {
     pub(super) summary: String,
     /// Millimeters in a model unit, where a model says so and --unit does not.
     pub(super) unit_mm: Option<f64>,
+    /// What refining curved parts did.
+    pub(super) smoothed: Option<SmoothedStats>,
     /// What axes go around, if a surface was read.
     pub(super) axes_box: Option<AxesBox>,
 }
@@ -45,6 +47,7 @@ impl Notes {
         self.warnings.extend(other.warnings);
         self.hints.extend(other.hints);
         self.summary.push_str(&other.summary);
+        self.smoothed = other.smoothed.or(self.smoothed);
     }
 }
 
@@ -414,6 +417,7 @@ impl<'a> Run<'a> {
                 tell_more(output, stats, done.as_ref(), &mut report.lines);
             }
         }
+        stats.smoothed = self.notes.smoothed;
         if output.stats {
             report.lines.push(serde_json::to_string(stats)?);
         }

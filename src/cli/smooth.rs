@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::messages::counted;
 use super::page;
 use super::paper::Notes;
+use super::stats::SmoothedStats;
 use super::values::{self, Smooth};
 
 /// The curved surface is no farther from facets than this on paper, unless the pen is finer, in
@@ -85,6 +86,8 @@ impl Smoothing {
                 smoothed.farthest * scale
             ));
         }
+        let farthest_mm = smoothed.farthest * scale;
+        notes.smoothed = Some(SmoothedStats { triangles: smoothed.triangles, farthest_mm });
         if smoothed.is_cut_short {
             notes.warnings.push(format!(
                 "smoothing ended at {after} triangles, {:.2} mm from the curved surface; use a \

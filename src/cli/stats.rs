@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use hiddenline::stages::drafting::Drafted;
 use hiddenline::stages::draw::surface::Certificate;
 use hiddenline::stages::draw::{DrawOutput, MeshSize};
 use hiddenline::stages::engines::face::FaceWork;
@@ -38,12 +39,59 @@ pub(super) struct Stats {
     pub(super) seconds: Seconds,
     /// Counts of the engine.
     pub(super) counts: Counts,
+    /// What refining curved parts did; none unless they were refined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) smoothed: Option<SmoothedStats>,
+    /// What finishing the lines on paper did; none for lines that stay as they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) drafted: Option<DraftedStats>,
     /// How close the lines of a surface are to its formulas; none if that is not proved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) certified: Option<Certified>,
     /// The work of the pens, before and after strokes were joined and ordered; none without pens.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) plot: Option<PlotStats>,
+}
+
+/// What refining curved parts did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub(super) struct SmoothedStats {
+    /// Triangles before and after.
+    pub(super) triangles: [usize; 2],
+    /// Greatest distance of the refined facets from the curved surface, in millimeters on paper.
+    pub(super) farthest_mm: f64,
+}
+
+/// What finishing the lines on paper did; lengths in millimeters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub(super) struct DraftedStats {
+    /// Ends that were joined to others.
+    joined: usize,
+    /// The widest gap that was bridged: no ink was added or moved farther.
+    farthest_mm: f64,
+    /// Short strokes that were left out, and their length.
+    dropped: usize,
+    dropped_mm: f64,
+    /// Ink that was left out since it lay on other ink.
+    overlap_mm: f64,
+    /// Ink that was left out where lines crowded each other.
+    thinned_mm: f64,
+    /// The share of the ink within a pen width of other ink, before lines are thinned.
+    crowded_share: f64,
+}
+
+impl From<Drafted> for DraftedStats {
+    fn from(drafted: Drafted) -> Self {
+        Self {
+            joined: drafted.n_joined,
+            farthest_mm: drafted.farthest_mm,
+            dropped: drafted.n_dropped,
+            dropped_mm: drafted.dropped_mm,
+            overlap_mm: drafted.overlap_mm,
+            thinned_mm: drafted.thinned_mm,
+            crowded_share: drafted.crowded_share,
+        }
+    }
 }
 
 /// How close the lines of a surface are to its formulas.

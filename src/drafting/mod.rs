@@ -81,6 +81,16 @@ const SCRAP_SHARE: f64 = 0.4;
 /// See [`SCRAP_SHARE`], in millimeters.
 const SHORTEST_SCRAP_MM: f64 = 5.0;
 
+/// Ink is crowded as a whole when more than this share of it is.
+pub const CROWDED_SHARE: f64 = 0.25;
+
+/// The default distance between thinned lines, in pen widths: it leaves half a pen width of paper between
+/// them.
+pub const DEFAULT_THIN: f64 = 1.5;
+
+/// Drawings of more points are not thinned to see what that would save.
+const MOST_TRIED_POINTS: usize = 1 << 17;
+
 /// In perspective, lines farther out than this in the image are left as they are. Pages are fitted to
 /// less, and a point beside the eye is arbitrarily far out.
 const WIDEST: f64 = 10.0;
@@ -123,6 +133,9 @@ pub struct Drafted {
     pub thinned_mm: f64,
     /// The share of the ink that has other ink beside it within a pen width, before lines are thinned.
     pub crowded_share: f64,
+    /// Length of what thinning to [`DEFAULT_THIN`] would leave out, in millimeters; known only where more than
+    /// [`CROWDED_SHARE`] is crowded and lines are not thinned, and not for very large drawings.
+    pub thinnable_mm: Option<f64>,
 }
 
 /// Finishes the visible and the hidden lines of a view.
@@ -161,6 +174,13 @@ pub fn finish(
         }
     }
     let crowded_share = crowded_share(&all, &paper, &paper.crowds(options.pen_width_mm));
+    let is_tried = options.thin_mm.is_none()
+        && crowded_share > CROWDED_SHARE
+        && all.points().len() <= MOST_TRIED_POINTS;
+    let thinnable = is_tried.then(|| {
+        let rule = paper.crowds(DEFAULT_THIN * options.pen_width_mm);
+        leave_out(&all, &paper, &rule).1
+    });
     let mut thinned = 0.0;
     if let Some(distance_mm) = options.thin_mm {
         (all, thinned) = leave_out(&all, &paper, &paper.crowds(distance_mm));
@@ -180,6 +200,7 @@ pub fn finish(
         overlap_mm: overlap / paper.mm,
         thinned_mm: thinned / paper.mm,
         crowded_share,
+        thinnable_mm: thinnable.map(|length| length / paper.mm),
     };
     (all, drafted)
 }

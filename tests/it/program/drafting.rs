@@ -62,8 +62,22 @@ fn crowded_drawings_get_a_hint_and_thin_follows_it() {
     let view = ["fence.obj", "--view", "front", "--overlap", "keep"];
     let (_, said) = drawn(folder.path(), &view);
     assert!(said.contains("--thin leaves room"), "{said}");
+    let number = |said: &str, before: &str| {
+        let rest = said.split_once(before).unwrap().1;
+        rest.split(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    let saved = number(&said, "and saves ");
     let (_, said) = drawn(folder.path(), &[&view[..], &["--thin"]].concat());
     assert!(said.contains("thinned out") && !said.contains("--thin"), "{said}");
+    assert!((number(&said, "lines: ") - saved).abs() <= 1.0, "{saved}: {said}");
+    let (_, said) = drawn(folder.path(), &[&view[..], &["--thin", "--stats"]].concat());
+    let json = said.lines().find(|line| line.starts_with('{')).unwrap();
+    let stats: serde_json::Value = serde_json::from_str(json).unwrap();
+    assert!((stats["drafted"]["thinned_mm"].as_f64().unwrap() - saved).abs() <= 1.0);
+    assert!(stats["drafted"]["farthest_mm"].as_f64().unwrap() <= 0.3, "a pen width");
+    assert!(stats["smoothed"].is_null());
+    let (_, said) = drawn(folder.path(), &[&view[..], &["--exact", "--stats"]].concat());
+    assert!(!said.contains("drafted"), "{said}");
     let (_, said) = drawn(folder.path(), &[&view[..], &["--thin=0.9mm"]].concat());
     assert!(said.contains("thinned out"), "{said}");
     let (_, said) = drawn(folder.path(), &["fence.obj", "--view", "front"]);
