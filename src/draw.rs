@@ -9,7 +9,7 @@ use crate::chain::{ChainOptions, chain, draft};
 use crate::classify::{DEFAULT_CREASE_DEG, LineSelection, ViewedScene};
 use crate::drafting::{Drafted, DraftingOptions, finish};
 use crate::engines::edge::{LineCounts, LineEngine, VisibilityOptions, outline, solve};
-use crate::model::creases::{CreaseChains, looseness};
+use crate::model::creases::CreaseChains;
 use crate::model::scene::Scene;
 use crate::page::DEFAULT_PEN_WIDTH_MM;
 use crate::strokes::{HiddenLines, StrokeKind, Strokes};
@@ -303,16 +303,15 @@ fn view<'a>(
     mm_per_unit: f64,
 ) -> ViewedScene<'a> {
     let (lines, crease_deg) = (options.lines, options.crease_deg);
-    let is_by_chains =
-        !options.exact && lines.contains(StrokeKind::Crease) && !looseness(scene).is_constructed();
     if options.exact {
         return ViewedScene::as_given(scene, camera, lines, crease_deg);
     }
-    if !is_by_chains {
+    let has_creases = lines.contains(StrokeKind::Crease);
+    let creases = if has_creases { CreaseChains::of_scene(scene, crease_deg) } else { None };
+    let Some(creases) = creases else {
         return ViewedScene::new(scene, camera, lines, crease_deg);
-    }
-    let chains = CreaseChains::new(scene, crease_deg);
-    let is_crease = chains.of_view(scene, camera, mm_per_unit);
+    };
+    let is_crease = creases.of_view(scene, camera, mm_per_unit, options.pen_width_mm);
     ViewedScene::with_creases(scene, camera, lines, &is_crease)
 }
 

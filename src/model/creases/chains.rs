@@ -7,8 +7,9 @@ use crate::links::{FREE, for_each_trail};
 use crate::model::scene::Scene;
 
 use super::looseness::model;
+use super::narrow::{NarrowFold, folds};
 use super::surroundings::bend_nearby;
-use super::{CreaseAngle, along, angle, length, looseness};
+use super::{CreaseAngle, SHARP_DEG, along, angle, length, looseness};
 
 /// Edges that turn more than this, in degrees, do not continue into each other.
 const MAX_TURN_DEG: f64 = 45.0;
@@ -23,13 +24,10 @@ const STRENGTH_MM: f64 = 10.0 / 3.0;
 /// How much of the surroundings' bend is subtracted from an edge's angle.
 const SURROUNDINGS: f64 = 0.7;
 
-/// Edges bent more than this, in degrees, are creases whatever the surroundings are.
-const SHARP_DEG: f64 = 60.0;
-
 /// Angles below [`SHARP_DEG`] by this many degrees and more feel the surroundings in full.
 const SHARP_RAMP_DEG: f64 = 15.0;
 
-/// The creases of a scene whose models are not all constructed.
+/// The creases of a scene that depend on the scale: of organic models, and of narrow folds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CreaseChains {
     crease_deg: f64,
@@ -37,6 +35,8 @@ pub struct CreaseChains {
     certain: Vec<u32>,
     links: Vec<ChainLink>,
     chains: Vec<ChainEnd>,
+    /// Edges that are no creases where the pen is wider than twice their distance.
+    narrow: Vec<NarrowFold>,
 }
 
 /// An edge of a chain.
@@ -57,6 +57,14 @@ struct ChainEnd {
 }
 
 impl CreaseChains {
+    /// The creases of a scene; `None` if they are the same at every scale: all edges above the crease angle.
+    /// O(edges log edges).
+    pub fn of_scene(scene: &Scene, crease_deg: f64) -> Option<Self> {
+        let is_constructed = looseness(scene).is_constructed();
+        let has_narrow = || !folds(scene, CreaseAngle::from_degrees(crease_deg)).is_empty();
+        (!is_constructed || has_narrow()).then(|| Self::new(scene, crease_deg))
+    }
+
     /// Finds the chains. O(edges log edges).
     pub fn new(scene: &Scene, crease_deg: f64) -> Self {
         let looseness = looseness(scene);
@@ -87,7 +95,9 @@ impl CreaseChains {
         };
         let certain = edges().filter(is_certain).collect();
         let candidates: Vec<ChainLink> = edges().filter_map(candidate).collect();
-        let mut found = Self { crease_deg, certain, links: Vec::new(), chains: Vec::new() };
+        let narrow = folds(scene, threshold);
+        let (links, chains) = (Vec::new(), Vec::new());
+        let mut found = Self { crease_deg, certain, links, chains, narrow };
         for_each_trail(&straightest(scene, &candidates), |trail| {
             let links = trail.iter().map(|&end| candidates[end as usize / 2]);
             if !links.clone().any(|link| threshold.is_exceeded(scene, link.edge)) {
@@ -110,20 +120,27 @@ impl CreaseChains {
     }
 
     /// For each edge whether it is a crease of a view at `mm_per_unit`, the millimeters on paper of an
-    /// image unit. O(edges).
+    /// image unit, for a pen. O(edges).
     ///
     /// Chains are measured whole, with what is hidden of them, so that views of a turntable agree.
-    pub fn of_view(&self, scene: &Scene, camera: &Camera, mm_per_unit: f64) -> Vec<bool> {
+    pub fn of_view(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        mm_per_unit: f64,
+        pen_width_mm: f64,
+    ) -> Vec<bool> {
         let mut is_crease = vec![false; scene.topology().edges().len()];
         self.certain.iter().for_each(|&edge| is_crease[edge as usize] = true);
         let positions = scene.mesh().positions();
         let (eye, forward) = (camera.eye(), camera.frame().forward);
-        let mm = |link: &ChainLink| match camera.projection() {
-            Projection::Orthographic => mm_per_unit * link.length,
+        // A length at an edge, in millimeters on paper.
+        let mm = |edge: u32, length: f64| match camera.projection() {
+            Projection::Orthographic => mm_per_unit * length,
             Projection::Perspective { near, .. } => {
-                let [a, b] = scene.topology().edge(link.edge).map(|v| positions[v as usize]);
+                let [a, b] = scene.topology().edge(edge).map(|v| positions[v as usize]);
                 let depth = (0.5 * (a + b) - eye).dot(forward);
-                mm_per_unit * link.length / depth.max(near * camera.forward().length())
+                mm_per_unit * length / depth.max(near * camera.forward().length())
             }
         };
         let mut start = 0;
@@ -132,12 +149,17 @@ impl CreaseChains {
             start = chain.end as usize;
             let (mut length_mm, mut strength) = (0.0, 0.0);
             for link in links {
-                let mm = mm(link);
+                let mm = mm(link.edge, link.length);
                 length_mm += mm;
                 strength += link.excess_deg * mm;
             }
             if length_mm >= chain.shortest_mm && strength >= chain.strength {
                 links.iter().for_each(|link| is_crease[link.edge as usize] = true);
+            }
+        }
+        for fold in &self.narrow {
+            if mm(fold.edge, fold.distance) <= 0.5 * pen_width_mm {
+                is_crease[fold.edge as usize] = false;
             }
         }
         is_crease

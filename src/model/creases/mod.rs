@@ -15,6 +15,7 @@
 
 mod chains;
 mod looseness;
+mod narrow;
 mod surroundings;
 
 use glam::DVec3;
@@ -29,6 +30,9 @@ use super::topology::EdgeUse;
 pub fn looseness(scene: &Scene) -> &Looseness {
     scene.looseness_or(looseness::measure)
 }
+
+/// Edges bent more than this, in degrees, are creases whatever is around them.
+const SHARP_DEG: f64 = 60.0;
 
 /// Angles may be this much above the threshold, at most, and still count as equal to it.
 const MOST_ANGLE_TOLERANCE_DEG: f64 = 0.5;

@@ -21,7 +21,7 @@ use super::angle;
 const REACH: f64 = 1.5;
 
 /// Most faces on a walk.
-const MAX_FACES: usize = 12;
+pub(super) const MAX_FACES: usize = 12;
 
 /// The mean over both sides of the largest angle, in radians, at edges near `edge` that are bent in the
 /// same sense, outwards or inwards. O(1).
@@ -33,7 +33,7 @@ pub(super) fn bend_nearby(scene: &Scene, edge: u32) -> f64 {
 }
 
 /// Whether the two uses' faces are wound against each other.
-fn is_turned(first: EdgeUse, second: EdgeUse) -> bool {
+pub(super) fn is_turned(first: EdgeUse, second: EdgeUse) -> bool {
     first != second && first.runs_upwards() == second.runs_upwards()
 }
 
@@ -54,8 +54,8 @@ fn sense(scene: &Scene, first: EdgeUse, second: EdgeUse) -> Option<bool> {
 fn largest_on_walk(scene: &Scene, edge: u32, used: EdgeUse, sense: bool) -> f64 {
     let positions = scene.mesh().positions();
     let at = |vertex: u32| positions[vertex as usize];
-    let [from, to] = scene.topology().edge(edge).map(at);
-    let mut walk = Walk { edge, used, sense, at: 0.5 * (from + to), across: 1.0, along: 0.0 };
+    let [from, _] = scene.topology().edge(edge).map(at);
+    let mut walk = Walk::new(scene, edge, used, sense);
     let height = |&corner: &u32| (at(corner) - from).cross(unit(scene, edge)).length();
     let width = scene.mesh().face(used.face()).iter().map(height).fold(0.0, f64::max);
     let reach = REACH * width;
@@ -73,7 +73,7 @@ fn largest_on_walk(scene: &Scene, edge: u32, used: EdgeUse, sense: bool) -> f64 
 }
 
 /// A point on an edge and a direction into one of its faces.
-struct Walk {
+pub(super) struct Walk {
     edge: u32,
     used: EdgeUse,
     /// The bend that is looked for, as the face is wound.
@@ -85,9 +85,26 @@ struct Walk {
 }
 
 impl Walk {
+    /// From the middle of an edge over one of its faces, at right angles to the edge.
+    pub(super) fn new(scene: &Scene, edge: u32, used: EdgeUse, sense: bool) -> Self {
+        let [from, to] =
+            scene.topology().edge(edge).map(|vertex| scene.mesh().positions()[vertex as usize]);
+        Self { edge, used, sense, at: 0.5 * (from + to), across: 1.0, along: 0.0 }
+    }
+
+    /// The use of the face that the walk is about to cross.
+    pub(super) fn face_use(&self) -> EdgeUse {
+        self.used
+    }
+
+    /// The sense that is looked for, which changes where faces are wound against each other.
+    pub(super) fn sense(&self) -> bool {
+        self.sense
+    }
+
     /// Over the face to its other side: where the walk continues, how far that is, and the angle there,
     /// or zero if the bend is in the other sense. `None` at the end of the surface.
-    fn step(&self, scene: &Scene) -> Option<(Self, f64, f64)> {
+    pub(super) fn step(&self, scene: &Scene) -> Option<(Self, f64, f64)> {
         let (topology, mesh) = (scene.topology(), scene.mesh());
         let at = |vertex: u32| mesh.positions()[vertex as usize];
         let face = self.used.face();

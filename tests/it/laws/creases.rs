@@ -100,7 +100,7 @@ fn a_ridge_in_noise_is_one_crease_and_the_noise_none() {
     let scene = rough_with_ridge(60, 0.17, 0.5);
     assert!(looseness(&scene).of_scene() > 0.5, "{}", looseness(&scene).of_scene());
     let chains = CreaseChains::new(&scene, 30.0);
-    let is_crease = chains.of_view(&scene, &camera(), 2.0);
+    let is_crease = chains.of_view(&scene, &camera(), 2.0, 0.3);
     let above = CreaseAngle::from_degrees(30.0);
     let positions = scene.mesh().positions();
     let (mut on_ridge, mut beside, mut bent_beside) = (0.0, 0.0, 0.0);
@@ -124,7 +124,7 @@ fn chains_grow_with_the_paper_and_shrink_to_nothing() {
     let scene = rough_with_ridge(40, 0.25, 0.4);
     let chains = CreaseChains::new(&scene, 30.0);
     let n = |scale: f64| {
-        let is_crease = chains.of_view(&scene, &camera(), scale);
+        let is_crease = chains.of_view(&scene, &camera(), scale, 0.0);
         is_crease.iter().filter(|&&is| is).count()
     };
     assert_eq!(n(1e-6), 0);
@@ -197,4 +197,58 @@ fn drawings_of_constructed_models_have_every_bent_edge() {
         let nearest = segments.iter().map(distance).fold(f64::INFINITY, f64::min);
         assert!(nearest <= 0.15 + 1e-9, "{at} is {nearest} mm from ink");
     }
+}
+
+/// A plate with a band of strips in its middle, each `width` wide, that are bent to and fro by twice `slope_deg`.
+fn plate_with_strips(width: f64, slope_deg: f64, n: usize) -> Scene {
+    let rise = width * slope_deg.to_radians().tan();
+    let inner = (0..=n).map(|k| (k as f64 * width, if k % 2 == 1 { rise } else { 0.0 }));
+    let end = n as f64 * width + 100.0;
+    let profile: Vec<(f64, f64)> =
+        [(-100.0, 0.0)].into_iter().chain(inner).chain([(end, 0.0)]).collect();
+    let mut soup = PolygonSoup::default();
+    for y in [0.0, 50.0] {
+        soup.positions.extend(profile.iter().map(|&(x, z)| DVec3::new(x, y, z)));
+    }
+    let m = profile.len() as u32;
+    for k in 0..m - 1 {
+        // Some faces are wound against their neighbors.
+        let face = [k, k + 1, m + k + 1, m + k];
+        let turned = [m + k, m + k + 1, k + 1, k];
+        soup.push_face(if k % 3 == 1 { &turned } else { &face });
+    }
+    Scene::new(Mesh::new(soup).unwrap().0)
+}
+
+#[test]
+fn strips_bent_to_and_fro_are_no_creases_where_the_pen_is_wider() {
+    let n_creases = |scene: &Scene, mm_per_unit: f64, pen_mm: f64| {
+        CreaseChains::of_scene(scene, 30.0).map(|creases| {
+            let is_crease = creases.of_view(scene, &camera(), mm_per_unit, pen_mm);
+            is_crease.iter().filter(|&&is| is).count()
+        })
+    };
+    // Bent by 20, 40, −40 … 20 degrees: eleven edges above 30, each undone
+    // after one strip of 0.106.
+    let strips = plate_with_strips(0.1, 20.0, 12);
+    assert_eq!(n_creases(&strips, 1.0, 0.22), Some(0));
+    assert_eq!(n_creases(&strips, 1.0, 0.21), Some(11));
+    assert_eq!(n_creases(&strips, 2.0, 0.22), Some(11));
+    // The two edges of a single step stay.
+    let mut soup = PolygonSoup::default();
+    for y in [0.0, 50.0] {
+        let profile = [(-9.0, 0.0), (0.0, 0.0), (0.1, 0.1), (9.0, 0.1)];
+        soup.positions.extend(profile.iter().map(|&(x, z)| DVec3::new(x, y, z)));
+    }
+    [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]].iter().for_each(|face| soup.push_face(face));
+    assert_eq!(n_creases(&Scene::new(Mesh::new(soup).unwrap().0), 1.0, 10.0), None);
+    // Sharper ones stay, and so do the two sides of a chamfer, whose bend goes on.
+    assert_eq!(n_creases(&plate_with_strips(0.1, 31.0, 12), 1.0, 10.0), None);
+    let mut soup = PolygonSoup::default();
+    let profile = [(-9.0, 0.0), (0.0, 0.0), (0.1, -0.1), (0.1, -9.0)];
+    for y in [0.0, 50.0] {
+        soup.positions.extend(profile.iter().map(|&(x, z)| DVec3::new(x, y, z)));
+    }
+    [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]].iter().for_each(|face| soup.push_face(face));
+    assert_eq!(n_creases(&Scene::new(Mesh::new(soup).unwrap().0), 1.0, 10.0), None);
 }
