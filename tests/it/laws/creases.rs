@@ -204,8 +204,11 @@ fn plate_with_strips(width: f64, slope_deg: f64, n: usize) -> Scene {
     let rise = width * slope_deg.to_radians().tan();
     let inner = (0..=n).map(|k| (k as f64 * width, if k % 2 == 1 { rise } else { 0.0 }));
     let end = n as f64 * width + 100.0;
-    let profile: Vec<(f64, f64)> =
-        [(-100.0, 0.0)].into_iter().chain(inner).chain([(end, 0.0)]).collect();
+    extruded(&[(-100.0, 0.0)].into_iter().chain(inner).chain([(end, 0.0)]).collect::<Vec<_>>())
+}
+
+/// A profile along y.
+fn extruded(profile: &[(f64, f64)]) -> Scene {
     let mut soup = PolygonSoup::default();
     for y in [0.0, 50.0] {
         soup.positions.extend(profile.iter().map(|&(x, z)| DVec3::new(x, y, z)));
@@ -235,20 +238,25 @@ fn strips_bent_to_and_fro_are_no_creases_where_the_pen_is_wider() {
     assert_eq!(n_creases(&strips, 1.0, 0.21), Some(11));
     assert_eq!(n_creases(&strips, 2.0, 0.22), Some(11));
     // The two edges of a single step stay.
-    let mut soup = PolygonSoup::default();
-    for y in [0.0, 50.0] {
-        let profile = [(-9.0, 0.0), (0.0, 0.0), (0.1, 0.1), (9.0, 0.1)];
-        soup.positions.extend(profile.iter().map(|&(x, z)| DVec3::new(x, y, z)));
-    }
-    [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]].iter().for_each(|face| soup.push_face(face));
-    assert_eq!(n_creases(&Scene::new(Mesh::new(soup).unwrap().0), 1.0, 10.0), None);
+    let step = extruded(&[(-9.0, 0.0), (0.0, 0.0), (0.1, 0.1), (9.0, 0.1)]);
+    assert_eq!(n_creases(&step, 1.0, 10.0), None);
+    // Of three strips, bent by 20, −40, 40 and −20 degrees, the third one is wide: its edge stays.
+    let rise = |width: f64| width * 20.0_f64.to_radians().tan();
+    let three =
+        [(-9.0, 0.0), (0.0, 0.0), (0.1, rise(0.1)), (0.2, 0.0), (0.6, rise(0.4)), (9.0, rise(0.4))];
+    assert_eq!(n_creases(&extruded(&three), 1.0, 0.3), Some(1));
+    assert_eq!(n_creases(&extruded(&three), 1.0, 1.0), Some(0));
     // Sharper ones stay, and so do the two sides of a chamfer, whose bend goes on.
     assert_eq!(n_creases(&plate_with_strips(0.1, 31.0, 12), 1.0, 10.0), None);
+    let chamfer = extruded(&[(-9.0, 0.0), (0.0, 0.0), (0.1, -0.1), (0.1, -9.0)]);
+    assert_eq!(n_creases(&chamfer, 1.0, 10.0), None);
+    // Around a thin rod the bends add up to a full turn, which undoes nothing.
     let mut soup = PolygonSoup::default();
-    let profile = [(-9.0, 0.0), (0.0, 0.0), (0.1, -0.1), (0.1, -9.0)];
     for y in [0.0, 50.0] {
-        soup.positions.extend(profile.iter().map(|&(x, z)| DVec3::new(x, y, z)));
+        let corner = |k: u32| f64::from(k) * std::f64::consts::FRAC_PI_3;
+        let at = |k: u32| DVec3::new(0.01 * corner(k).cos(), y, 0.01 * corner(k).sin());
+        soup.positions.extend((0..6).map(at));
     }
-    [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]].iter().for_each(|face| soup.push_face(face));
+    (0..6).for_each(|k| soup.push_face(&[k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k]));
     assert_eq!(n_creases(&Scene::new(Mesh::new(soup).unwrap().0), 1.0, 10.0), None);
 }

@@ -199,6 +199,9 @@ fn css_variables_and_opacity_after_a_slash_are_understood() {
     ] {
         assert_eq!(color(content), red, "{content}");
     }
+    // Rules for the root are not for what is in it.
+    let inner = "<style>:root { stroke: red }</style><g stroke='blue'><path d='M0 0h1'/></g>";
+    assert_eq!(color(inner), Some("#0000ff".into()));
     // An unknown variable leaves what is inherited, a transparent one is no ink.
     assert_eq!(color("<path style='stroke:var(--none)' d='M0 0h1'/>"), Some("#000000".into()));
     assert_eq!(color("<path style='stroke:rgb(255 0 0 / 0%)' d='M0 0h1'/>"), None);
