@@ -61,7 +61,8 @@ impl CreaseChains {
     /// O(edges log edges).
     pub fn of_scene(scene: &Scene, crease_deg: f64) -> Option<Self> {
         let is_constructed = looseness(scene).is_constructed();
-        let has_narrow = || !folds(scene, CreaseAngle::from_degrees(crease_deg)).is_empty();
+        let all = (0..scene.topology().edges().len() as u32).into_par_iter();
+        let has_narrow = || !folds(scene, CreaseAngle::from_degrees(crease_deg), all).is_empty();
         (!is_constructed || has_narrow()).then(|| Self::new(scene, crease_deg))
     }
 
@@ -93,9 +94,9 @@ impl CreaseChains {
                 excess_deg: excess_deg(scene, edge, low),
             })
         };
-        let certain = edges().filter(is_certain).collect();
+        let certain: Vec<u32> = edges().filter(is_certain).collect();
         let candidates: Vec<ChainLink> = edges().filter_map(candidate).collect();
-        let narrow = folds(scene, threshold);
+        let narrow = folds(scene, threshold, certain.par_iter().copied());
         let (links, chains) = (Vec::new(), Vec::new());
         let mut found = Self { crease_deg, certain, links, chains, narrow };
         for_each_trail(&straightest(scene, &candidates), |trail| {

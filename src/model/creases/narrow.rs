@@ -27,10 +27,14 @@ pub(super) struct NarrowFold {
     pub(super) distance: f64,
 }
 
-/// The edges above the crease angle whose bend is undone within few faces on both sides. Sharp ones never count. O(edges).
-pub(super) fn folds(scene: &Scene, crease: CreaseAngle) -> Vec<NarrowFold> {
+/// Those of some edges that are above the crease angle and whose bend is undone within few faces on both sides.
+/// Sharp ones never count. O(edges).
+pub(super) fn folds(
+    scene: &Scene,
+    crease: CreaseAngle,
+    edges: impl IndexedParallelIterator<Item = u32>,
+) -> Vec<NarrowFold> {
     let sharp = CreaseAngle::from_degrees(SHARP_DEG);
-    let n_edges = scene.topology().edges().len() as u32;
     let fold = |edge: u32| {
         let &[first, second] = scene.topology().uses(edge) else { return None };
         if !crease.is_exceeded(scene, edge) || sharp.is_exceeded(scene, edge) {
@@ -40,7 +44,7 @@ pub(super) fn folds(scene: &Scene, crease: CreaseAngle) -> Vec<NarrowFold> {
         let [one, other] = ways.map(|(from, over)| undone_after(scene, edge, from, over, crease));
         Some(NarrowFold { edge, distance: one?.max(other?) })
     };
-    (0..n_edges).into_par_iter().with_min_len(4096).filter_map(fold).collect()
+    edges.with_min_len(4096).filter_map(fold).collect()
 }
 
 /// How far a walk from an edge goes over a face until it comes to one that lies as `from` does, by less
