@@ -52,7 +52,10 @@ pub(super) fn without_comments(css: &str) -> Cow<'_, str> {
 
 /// The text of all `<style>` elements, without comments.
 pub(super) fn style_text(root: Node<'_, '_>) -> String {
-    let styles = root.descendants().filter(|node| node.tag_name().name() == "style");
+    let styles = root.descendants().filter(|node| {
+        node.tag_name().name() == "style"
+            && is_for_screens(node.attribute("media").unwrap_or_default())
+    });
     let texts: Vec<Cow<'_, str>> =
         styles.filter_map(|node| node.text()).map(without_comments).collect();
     texts.join("\n")
@@ -91,33 +94,10 @@ impl Selects<'_> {
 }
 
 impl<'a> StyleSheet<'a> {
-    /// The rules of [`style_text`]; at-rules such as `@media` are skipped.
+    /// The rules of [`style_text`], those for screens included; other at-rules than `@media` are skipped.
     pub(super) fn new(text: &'a str) -> Self {
         let mut rules = Vec::new();
-        let mut rest = text.trim_start();
-        while !rest.is_empty() {
-            let stops: &[u8] = if rest.starts_with('@') { b"{;" } else { b"{" };
-            let head_end = end_of(rest, stops);
-            let head = &rest[..head_end];
-            rest = &rest[head_end..];
-            if let Some(after) = rest.strip_prefix('{') {
-                let body_end = end_of(after, b"}");
-                if !head.starts_with('@') {
-                    let declarations: Vec<_> = declarations(&after[..body_end]).collect();
-                    let parse = |selector: &'a str| match selector.trim() {
-                        ":root" => Some(Selects::Root),
-                        selector => Selector::parse(selector).map(Selects::Elements),
-                    };
-                    rules.extend(
-                        split(head, b',')
-                            .filter_map(parse)
-                            .map(|selects| Rule { selects, declarations: declarations.clone() }),
-                    );
-                }
-                rest = &after[body_end..];
-            }
-            rest = rest.get(1..).unwrap_or_default().trim_start();
-        }
+        add_rules(text, &mut rules, 0);
         rules.sort_by_cached_key(|rule| rule.selects.specificity());
         Self { rules }
     }
@@ -132,6 +112,48 @@ impl<'a> StyleSheet<'a> {
         let matching = self.rules.iter().filter(|rule| rule.selects.matches(node));
         matching.flat_map(|rule| &rule.declarations).copied().collect()
     }
+}
+
+/// The deepest nesting of at-rules.
+const DEEPEST: usize = 8;
+
+fn add_rules<'a>(text: &'a str, rules: &mut Vec<Rule<'a>>, depth: usize) {
+    let mut rest = text.trim_start();
+    while !rest.is_empty() {
+        let stops: &[u8] = if rest.starts_with('@') { b"{;" } else { b"{" };
+        let head_end = end_of(rest, stops);
+        let head = &rest[..head_end];
+        rest = &rest[head_end..];
+        if let Some(after) = rest.strip_prefix('{') {
+            let body_end = end_of(after, b"}");
+            let body = &after[..body_end];
+            if let Some(media) = head.strip_prefix("@media") {
+                if is_for_screens(media) && depth < DEEPEST {
+                    add_rules(body, rules, depth + 1);
+                }
+            } else if !head.starts_with('@') {
+                let declarations: Vec<_> = declarations(body).collect();
+                let parse = |selector: &'a str| match selector.trim() {
+                    ":root" => Some(Selects::Root),
+                    selector => Selector::parse(selector).map(Selects::Elements),
+                };
+                rules.extend(
+                    split(head, b',')
+                        .filter_map(parse)
+                        .map(|selects| Rule { selects, declarations: declarations.clone() }),
+                );
+            }
+            rest = &after[body_end..];
+        }
+        rest = rest.get(1..).unwrap_or_default().trim_start();
+    }
+}
+
+/// Whether a list of media includes screens, as viewers show drawings; conditions never hold.
+fn is_for_screens(media: &str) -> bool {
+    let is_screen =
+        |name: &str| name.eq_ignore_ascii_case("screen") || name.eq_ignore_ascii_case("all");
+    media.trim().is_empty() || media.split(',').any(|name| is_screen(name.trim()))
 }
 
 struct XmlNode<'a, 'input: 'a>(Node<'a, 'input>);
@@ -234,14 +256,23 @@ mod tests {
 
     #[test]
     fn rules_end_where_their_braces_do() {
-        let text = "<!-- a, b.c /* } */ { x: 1 } @media print { a { x: 2 } } @import 'y'; \
+        let text = "<!-- a, b.c /* } */ { x: 1 } @media print { a { x: 2 } } @media screen, \
+                    print { k { l: 6 } } @media (width) { k { x: 7 } } @import 'y'; \
                     :root{z:(3)} d {e:'}';f:4} g { h: 5";
         let text = without_comments(text);
         let sheet = StyleSheet::new(&text);
         let mut found: Vec<_> = sheet.rules.iter().flat_map(|rule| &rule.declarations).collect();
         found.sort_by_key(|declaration| declaration.name);
         let found: Vec<_> = found.iter().map(|d| (d.name, d.value)).collect();
-        let expected = [("e", "'}'"), ("f", "4"), ("h", "5"), ("x", "1"), ("x", "1"), ("z", "(3)")];
+        let expected = [
+            ("e", "'}'"),
+            ("f", "4"),
+            ("h", "5"),
+            ("l", "6"),
+            ("x", "1"),
+            ("x", "1"),
+            ("z", "(3)"),
+        ];
         assert_eq!(found, expected);
     }
 

@@ -217,7 +217,8 @@ impl Style {
 
     fn set_from_css(&mut self, own: &mut OwnStyle, css: &Declaration<'_>, around: &Self) {
         let value = with_variables(css.value, &self.variables.clone()).into_owned();
-        match css.name {
+        // Names of properties are the same in any letter case.
+        match css.name.to_ascii_lowercase().as_str() {
             "transform" => own.transform = Some(value),
             name if GEOMETRY.contains(&name) => {
                 own.geometry.push((name.to_owned(), value.trim().to_owned()));

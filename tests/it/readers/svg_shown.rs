@@ -199,6 +199,16 @@ fn css_variables_and_opacity_after_a_slash_are_understood() {
     ] {
         assert_eq!(color(content), red, "{content}");
     }
+    // Names of properties in any letter case, and rules for screens.
+    let cases = [
+        ("<style>path { STROKE: Red }</style>", red.clone()),
+        ("<style>@media screen { path { stroke: red } }</style>", red.clone()),
+        ("<style media='all'>path { stroke: red }</style>", red.clone()),
+        ("<style media='print'>path { stroke: red }</style>", Some("#000000".into())),
+    ];
+    for (sheet, expected) in cases {
+        assert_eq!(color(&format!("{sheet}<path d='M0 0h1'/>")), expected, "{sheet}");
+    }
     // Rules for the root are not for what is in it.
     let inner = "<style>:root { stroke: red }</style><g stroke='blue'><path d='M0 0h1'/></g>";
     assert_eq!(color(inner), Some("#0000ff".into()));
