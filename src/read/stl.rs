@@ -239,8 +239,8 @@ fn skip_comments(words: &mut Words<'_>, parsed: &mut Parsed) {
     }
 }
 
-/// Reads facets up to and including the line of `endsolid`, or to the end of the file. `watch` is told how
-/// many bytes are left.
+/// Reads facets up to and including the line of `endsolid`, or to the end of the file. `watch` gets the
+/// number of bytes left.
 fn read_solid(
     words: &mut Words<'_>,
     parsed: &mut Parsed,

@@ -2,14 +2,14 @@
 
 use std::cell::Cell;
 
-/// How often a listener is told, at most.
+/// Reports to a listener, at most.
 const TIMES: usize = 200;
 
 /// Tells a listener which share of a file's bytes has been read.
 pub(super) struct Watch<'a> {
     tell: &'a dyn Fn(f64),
     n_bytes: usize,
-    /// The position from which on the listener is told again.
+    /// The position at which the next report is due.
     next: Cell<usize>,
     /// The share of the whole work that is done once the bytes are read.
     most: f64,

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use roxmltree::Node;
 use simplecss::{AttributeOperator, Element, PseudoClass, Selector};
@@ -68,7 +69,8 @@ pub(super) struct StyleSheet<'a> {
 
 struct Rule<'a> {
     selects: Selects<'a>,
-    declarations: Vec<Declaration<'a>>,
+    /// Those of one block, which many selectors may share.
+    declarations: Rc<[Declaration<'a>]>,
 }
 
 enum Selects<'a> {
@@ -107,10 +109,15 @@ impl<'a> StyleSheet<'a> {
         self.rules.len()
     }
 
+    /// Number of declarations, counted for each selector.
+    pub(super) fn n_declarations(&self) -> usize {
+        self.rules.iter().map(|rule| rule.declarations.len()).sum()
+    }
+
     /// What the rules declare for `node`, in ascending order of precedence.
     pub(super) fn declarations(&self, node: Node<'_, '_>) -> Vec<Declaration<'a>> {
         let matching = self.rules.iter().filter(|rule| rule.selects.matches(node));
-        matching.flat_map(|rule| &rule.declarations).copied().collect()
+        matching.flat_map(|rule| rule.declarations.iter()).copied().collect()
     }
 }
 
@@ -132,7 +139,7 @@ fn add_rules<'a>(text: &'a str, rules: &mut Vec<Rule<'a>>, depth: usize) {
                     add_rules(body, rules, depth + 1);
                 }
             } else if !head.starts_with('@') {
-                let declarations: Vec<_> = declarations(body).collect();
+                let declarations: Rc<[_]> = declarations(body).collect();
                 let parse = |selector: &'a str| match selector.trim() {
                     ":root" => Some(Selects::Root),
                     selector => Selector::parse(selector).map(Selects::Elements),
@@ -261,7 +268,8 @@ mod tests {
                     :root{z:(3)} d {e:'}';f:4} g { h: 5";
         let text = without_comments(text);
         let sheet = StyleSheet::new(&text);
-        let mut found: Vec<_> = sheet.rules.iter().flat_map(|rule| &rule.declarations).collect();
+        let mut found: Vec<_> =
+            sheet.rules.iter().flat_map(|rule| rule.declarations.iter()).collect();
         found.sort_by_key(|declaration| declaration.name);
         let found: Vec<_> = found.iter().map(|d| (d.name, d.value)).collect();
         let expected = [

@@ -16,6 +16,9 @@ use super::style::{OwnStyle, Style, parse_length};
 use super::{MAX_COORDINATE_MM, MAX_DEPTH, SvgError, SvgOptions, transform};
 use crate::plot::{Pen, Polylines};
 
+/// The most declarations of style sheets, counted for each selector of their rule: all may apply to one element.
+const MAX_DECLARATIONS: usize = 1 << 20;
+
 /// Millimeters in a CSS pixel.
 const MM_PER_PX: f64 = 25.4 / 96.0;
 
@@ -89,6 +92,11 @@ impl<'a, 'input> Reader<'a, 'input> {
         let work = sheet.len().saturating_mul(root.descendants().count());
         if work > 1 << 32 {
             return Err(SvgError::TooMany { what: "style rules times elements", limit: 1 << 32 });
+        }
+        let n_declarations = sheet.n_declarations();
+        if n_declarations > MAX_DECLARATIONS {
+            let what = "declarations times selectors";
+            return Err(SvgError::TooMany { what, limit: MAX_DECLARATIONS });
         }
         Ok(Self {
             options,

@@ -208,8 +208,14 @@ impl Style {
             return;
         }
         let mut variables = BTreeMap::clone(&self.variables);
+        let mut length: usize =
+            variables.iter().map(|(name, value)| name.len() + value.len()).sum();
         for (name, value) in set {
             let value = with_variables(value, &variables).into_owned();
+            length += name.len() + value.len();
+            if length > MAX_VARIABLES {
+                break;
+            }
             variables.insert(name.to_owned(), value.trim().to_owned());
         }
         self.variables = Rc::new(variables);
@@ -227,6 +233,9 @@ impl Style {
         }
     }
 }
+
+/// The most bytes of the variables of an element; further ones are unknown.
+const MAX_VARIABLES: usize = 1 << 18;
 
 /// A color, also with its opacity after a slash, as in `rgb(255 0 0 / 50%)`.
 fn color_of(text: &str) -> Option<svgtypes::Color> {

@@ -119,9 +119,14 @@ impl Separator {
 pub(super) fn has_thousands(cell: &str) -> bool {
     let digits = cell.trim_start_matches(['+', '-', '\u{2212}']);
     let is_separator = |c: char| ",.'’_ \u{a0}\u{202f}".contains(c);
-    digits.starts_with(|c: char| c.is_ascii_digit())
-        && digits.chars().all(|c| c.is_ascii_digit() || is_separator(c))
-        && digits.contains(is_separator)
+    let groups: Vec<&str> = digits.split(is_separator).collect();
+    let [first, middle @ .., last] = &groups[..] else { return false };
+    let is_number = |group: &str| !group.is_empty() && group.bytes().all(|c| c.is_ascii_digit());
+    // Dates have other groups.
+    is_number(first)
+        && first.len() <= 3
+        && middle.iter().all(|group| is_number(group) && group.len() == 3)
+        && is_number(last)
 }
 
 /// Reads cells of one file, which has decimal points or decimal commas but not both.
@@ -211,7 +216,11 @@ mod tests {
         assert_eq!(read("\u{2212}\u{2212}1"), Some(Cell::Word));
         let cells = ["1,234,567", "1,234.5", "-1.234,5", "1 234.5", "1'234", "12\u{202f}345"];
         assert!(cells.iter().all(|cell| has_thousands(cell) && read(cell) == Some(Cell::Word)));
-        assert!(!["x", "1x", "", "-", "2024-01-01", "12"].iter().any(|cell| has_thousands(cell)));
+        assert!(
+            !["x", "1x", "", "-", "2024-01-01", "2024.01.01", "01.02.2024", "12"]
+                .iter()
+                .any(|cell| has_thousands(cell))
+        );
     }
 
     #[test]

@@ -60,10 +60,18 @@ impl CreaseChains {
     /// The creases of a scene; `None` if they are the same at every scale: all edges above the crease angle.
     /// O(edges log edges).
     pub fn of_scene(scene: &Scene, crease_deg: f64) -> Option<Self> {
-        let is_constructed = looseness(scene).is_constructed();
-        let all = (0..scene.topology().edges().len() as u32).into_par_iter();
-        let has_narrow = || !folds(scene, CreaseAngle::from_degrees(crease_deg), all).is_empty();
-        (!is_constructed || has_narrow()).then(|| Self::new(scene, crease_deg))
+        if !looseness(scene).is_constructed() {
+            return Some(Self::new(scene, crease_deg));
+        }
+        let threshold = CreaseAngle::from_degrees(crease_deg);
+        let edges =
+            || (0..scene.topology().edges().len() as u32).into_par_iter().with_min_len(4096);
+        let narrow = folds(scene, threshold, edges());
+        if narrow.is_empty() {
+            return None;
+        }
+        let certain = edges().filter(|&edge| threshold.is_exceeded(scene, edge)).collect();
+        Some(Self { crease_deg, certain, links: Vec::new(), chains: Vec::new(), narrow })
     }
 
     /// Finds the chains. O(edges log edges).

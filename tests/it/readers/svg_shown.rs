@@ -217,6 +217,11 @@ fn css_variables_and_opacity_after_a_slash_are_understood() {
     assert_eq!(color("<path style='stroke:rgb(255 0 0 / 0%)' d='M0 0h1'/>"), None);
     let width = shown("<path style='--w: 2; stroke-width:var(--w)' d='M0 0h1'/>");
     assert!((width.plot.layers[0].pen.width_mm - 2.0).abs() < 1e-9);
+    // Rules and variables that would fill the memory.
+    let rule = format!("<style>{}a {{ {} }}</style>", "a,".repeat(100_000), "b:c;".repeat(100_000));
+    assert!(matches!(read(&page(&rule), &SvgOptions::default()), Err(SvgError::TooMany { .. })));
+    let many: String = (0..20_000).map(|k| format!("--v{k}:var(--v);")).collect();
+    assert_ink(&format!("<path style='--v:{};{many}' d='M0 0h1'/>", "1".repeat(9000)), 1, 1.0);
     // Variables that name themselves, and that grow without end, end all the same.
     let mut growing = "<path style='--v0: 1 1 1 1;".to_owned();
     for k in 1..30 {
